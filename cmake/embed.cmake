@@ -1,0 +1,15 @@
+# cmake -DFOLDER=shaders -DOUTPUT=shader_sources.c -P embed.cmake: every shader as a C string table.
+file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*.glsl ${FOLDER}/*.frag ${FOLDER}/*.vert)
+list(SORT files)
+set(table "")
+set(bodies "")
+set(number 0)
+foreach(name ${files})
+  file(READ ${FOLDER}/${name} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
+  string(APPEND bodies "static const unsigned char text_${number}[] = {${bytes}0};\n")
+  string(APPEND table "    {\"${name}\", (const char *)text_${number}},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${OUTPUT} "/* Made from the folder shaders/ at build time. */\n#include \"shader_sources.h\"\n\n${bodies}
+const shader_source shader_sources[] = {\n${table}};\nconst size_t shader_source_count = ${number};\n")

@@ -1,0 +1,19 @@
+# Compiler flags that every target of ours takes, by linking nephele_flags.
+add_library(nephele_flags INTERFACE)
+target_compile_options(nephele_flags INTERFACE
+  -Wall -Wextra -Wshadow -Wpointer-arith -Wundef -Wvla
+  $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes -Wmissing-prototypes>
+  # The same bytes from every compiler and processor: a product and a sum stay two roundings.
+  -ffp-contract=off
+  # Neither changes a value; both let square roots and loops be vectorised.
+  -fno-math-errno -fno-trapping-math)
+# A loop that clang does not vectorise (under the sanitizers, for instance) is slower, not wrong.
+target_compile_options(nephele_flags INTERFACE $<$<C_COMPILER_ID:Clang>:-Wno-pass-failed>)
+target_compile_definitions(nephele_flags INTERFACE _XOPEN_SOURCE=700)
+if(NEPHELE_WERROR)
+  target_compile_options(nephele_flags INTERFACE -Werror)
+endif()
+if(NEPHELE_SANITIZE)
+  target_compile_options(nephele_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(nephele_flags INTERFACE -fsanitize=address,undefined)
+endif()

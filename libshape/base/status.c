@@ -1,0 +1,24 @@
+/* Error text and version. */
+#include "shape/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+shape_status shape_error_set(shape_error *error, shape_status status, const char *format, ...)
+{
+    if (error) {
+        va_list arguments;
+        va_start(arguments, format);
+        error->status = status;
+        vsnprintf(error->text, sizeof error->text, format, arguments);
+        va_end(arguments);
+    }
+    return status;
+}
+
+shape_status shape_error_memory(shape_error *error)
+{
+    return shape_error_set(error, SHAPE_ERROR_MEMORY, "not enough memory (make the cloud smaller)");
+}
+
+const char *shape_version(void) { return NEPHELE_VERSION; }

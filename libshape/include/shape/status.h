@@ -1,0 +1,44 @@
+/* Errors as values: every function that can fail returns a shape_status and fills a shape_error. */
+#ifndef SHAPE_STATUS_H
+#define SHAPE_STATUS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum shape_status {
+    SHAPE_OK = 0,
+    SHAPE_ERROR_MEMORY,   /* an allocation failed */
+    SHAPE_ERROR_ARGUMENT, /* a parameter is outside its stated range */
+    SHAPE_ERROR_FORMAT,   /* the bytes or text read are not what they should be */
+    SHAPE_ERROR_IO,       /* the system could not read or write */
+    SHAPE_ERROR_LIMIT,    /* a stated limit would be passed */
+    SHAPE_ERROR_SYSTEM    /* something outside the library is missing (GL, a driver) */
+} shape_status;
+
+/* One mistake in one line, without a newline and without the program's name. */
+typedef struct shape_error {
+    shape_status status;
+    char text[512];
+} shape_error;
+
+#if defined(__GNUC__)
+#define SHAPE_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define SHAPE_PRINTF(text, first)
+#endif
+
+/* Fills *error (which may be NULL) with a printf-formatted line, and returns status, so that a caller can write
+ * `return shape_error_set(error, SHAPE_ERROR_FORMAT, "...", ...)`. Too long a text is cut. */
+shape_status shape_error_set(shape_error *error, shape_status status, const char *format, ...) SHAPE_PRINTF(3, 4);
+
+/* The usual line for a failed allocation. Returns SHAPE_ERROR_MEMORY. */
+shape_status shape_error_memory(shape_error *error);
+
+/* The library's version, "major.minor.patch". Static storage. */
+const char *shape_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,46 @@
+#!/bin/sh
+# Builds the fuzzers and runs each for SECONDS (60 where not given): sh tests/fuzz/run.sh SECONDS [NAME]...
+# What they find worth keeping goes to build/fuzz/corpus/NAME; tests/fuzz/corpus/NAME are the seeds. A crash leaves its
+# input in build/fuzz/crashes and ends with exit code 1.
+set -eu
+cd "$(dirname "$0")/../.."
+seconds=${1:-60}
+case $seconds in
+'' | *[!0-9]*)
+    echo "run.sh: \"$seconds\" is no number of seconds" >&2
+    exit 2
+    ;;
+esac
+[ $# = 0 ] || shift
+
+cmake --preset fuzz > /dev/null
+build=build/fuzz
+if [ $# = 0 ]; then
+    for source in tests/fuzz/fuzz_*.c; do
+        set -- "$@" "$(basename "$source" .c | sed s/^fuzz_//)"
+    done
+fi
+mkdir -p "$build/crashes"
+failed=
+for name in "$@"; do
+    cmake --build "$build" --target "fuzz_$name" > "$build/fuzz_$name.build" 2>&1 || {
+        cat "$build/fuzz_$name.build" >&2
+        exit 1
+    }
+    seeds=tests/fuzz/corpus/$name
+    found=$build/corpus/$name
+    mkdir -p "$found"
+    [ -d "$seeds" ] || seeds=
+    options=
+    [ ! -f "tests/fuzz/$name.dict" ] || options=-dict=tests/fuzz/$name.dict
+    # Ten seconds for an input of 64 KiB are a hang, half a gigabyte at once is a hole.
+    # shellcheck disable=SC2086
+    "$build/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 \
+        -max_len=65536 -artifact_prefix="$build/crashes/$name-" -print_final_stats=1 $options \
+        "$found" $seeds > "$build/fuzz_$name.log" 2>&1 || failed="$failed $name"
+    grep -E 'stat::number_of_executed_units|ERROR|SUMMARY' "$build/fuzz_$name.log" | sed "s/^/$name: /"
+done
+if [ -n "$failed" ]; then
+    echo "run.sh: failed:$failed (see $build/fuzz_NAME.log, inputs in $build/crashes)" >&2
+    exit 1
+fi
