@@ -16,7 +16,7 @@ libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
 packages_test="
 clang libclang-rt-dev libomp-dev clang-format-14
 libcmocka-dev
-xvfb xauth xdotool x11-apps imagemagick"
+xvfb xauth xdotool x11-apps imagemagick python3"
 
 # Prints its arguments as one line on standard error, after the script's name, and ends the script.
 die()
@@ -31,8 +31,7 @@ packages_missing()
     for package in "$@"; do
         status=$(dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null) || status=
         case $status in
-        *not-installed*) printf '%s ' "$package" ;;
-        installed*) ;;
+        installed*) ;; # once more for each foreign architecture
         *) printf '%s ' "$package" ;;
         esac
     done

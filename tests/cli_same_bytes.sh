@@ -6,6 +6,9 @@ bin=$1
 source=$2
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
+# A name without blanks for the source folder: the flags below are taken word by word.
+ln -s "$(cd "$source" && pwd)" "$tmp/source"
+source=$tmp/source
 
 fail() {
     echo "cli_same_bytes: $1" >&2

@@ -49,6 +49,46 @@ static inline void sample_primitives(shape_primitives *list, shape_random *rando
     }
 }
 
+/* Details and, for a layer, all that a layer record holds. */
+static inline void sample_layer(shape_field *field, shape_random *random)
+{
+    shape_layer *l = &field->layer;
+    *l = shape_layer_defaults();
+    bool layer = field->model == SHAPE_MODEL_LAYER;
+    if (shape_random_u32(random) % 2) {
+        field->detail.displace = sample_range(random, 0, 2);
+        field->detail.displace_scale = sample_range(random, 0, 2);
+        if (!layer && field->model != SHAPE_MODEL_METABALL)
+            field->detail.smoothness = sample_range(random, 0, 1);
+        if (!layer) {
+            field->detail.billow = sample_range(random, 0, 1);
+            field->detail.wisp = sample_range(random, 0, 1);
+        }
+        field->detail.detail_depth = sample_range(random, 0, 1);
+        field->detail.detail_scale = sample_range(random, 0, 2);
+    }
+    if (!layer)
+        return;
+    l->bounds = (shape_bounds)(shape_random_u32(random) % 3);
+    l->noise = (shape_noise_kind)(shape_random_u32(random) % 4);
+    l->worley_octaves = 1 + (int)(shape_random_u32(random) % 8);
+    l->blend = sample_range(random, 0, 1);
+    l->gain = sample_range(random, 0, 9);
+    l->worley_gain = sample_range(random, 0, 9);
+    l->worley_frequency = sample_range(random, 0.1, 9);
+    for (int i = 0; i < 3; i++)
+        l->stretch[i] = sample_range(random, 0.1, 9);
+    l->coverage = sample_range(random, 0, 1);
+    l->cut = sample_range(random, 0, 0.9);
+    l->ramp[0] = sample_range(random, 0, 0.5);
+    l->ramp[1] = sample_range(random, 0.5, 1);
+    l->falloff = sample_range(random, 0, 1);
+    l->fade_bottom = sample_range(random, 0, 1);
+    l->fade_top = sample_range(random, 0, 1);
+    l->fade_side = sample_range(random, 0, 1);
+    l->planet_radius = l->bounds == SHAPE_BOUNDS_ALTITUDES ? sample_range(random, 0, 100) : 0;
+}
+
 static inline void sample_settings(shape_cloud *cloud, shape_random *random)
 {
     for (int i = 0; i < 12; i++)
@@ -60,6 +100,7 @@ static inline void sample_settings(shape_cloud *cloud, shape_random *random)
                                  .noise_scale = sample_range(random, 0.01, 2),
                                  .edge = sample_range(random, 0, 9),
                                  .seed = (uint64_t)shape_random_u32(random) << 32 | shape_random_u32(random)};
+    sample_layer(&cloud->field, random);
     cloud->medium = (shape_medium){.extinction = sample_range(random, 0, 9),
                                    .albedo = sample_range(random, 0, 1),
                                    .phase = (shape_phase_kind)(shape_random_u32(random) % 5),
@@ -131,6 +172,23 @@ static inline shape_set *sample_two_clouds(void)
     return set;
 }
 
+/* As docs/neph-format.md says it. */
+static inline bool needs_layer_record(const shape_field *field)
+{
+    const shape_detail *d = &field->detail;
+    return field->model == SHAPE_MODEL_LAYER || d->smoothness != 0 || d->displace != 0 ||
+           d->displace_scale != 0 || d->billow != 0 || d->wisp != 0 || d->detail_depth != 0 ||
+           d->detail_scale != 0;
+}
+
+static inline bool has_layer_record(const shape_set *set)
+{
+    for (size_t i = 0; i < set->cloud_count; i++)
+        if (needs_layer_record(&set->clouds[i].field))
+            return true;
+    return false;
+}
+
 static inline void assert_same_floats(const void *a, const void *b, size_t count)
 {
     if (count)
@@ -147,6 +205,8 @@ static inline void assert_same_cloud(const shape_cloud *a, const shape_cloud *b)
                 a->field.octaves == b->field.octaves);
     assert_true(a->field.kappa == b->field.kappa && a->field.noise_scale == b->field.noise_scale &&
                 a->field.edge == b->field.edge);
+    assert_memory_equal(&a->field.detail, &b->field.detail, sizeof a->field.detail);
+    assert_memory_equal(&a->field.layer, &b->field.layer, sizeof a->field.layer);
     assert_memory_equal(&a->medium, &b->medium, sizeof a->medium);
 }
 

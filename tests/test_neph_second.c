@@ -67,7 +67,7 @@ static uint64_t read_frame(bytes file)
     assert_true(file.size >= 32);
     assert_memory_equal(file.at, magic, 8);
     assert_int_equal(number(file, 8, 2), 1);
-    assert_int_equal(number(file, 10, 2), 0);
+    assert_true(number(file, 10, 2) <= 1);
     uint64_t chunks = number(file, 12, 4);
     assert_true(chunks >= 2);
     assert_true(number(file, 16, 8) == file.size);
@@ -121,6 +121,43 @@ static void expect_settings(bytes file, uint64_t record, const shape_cloud *clou
     assert_int_equal(number(file, record + 204, 4), 0);
 }
 
+/* By how much a primitive (of a layer: its bounds) is grown. */
+static double support_factor(const shape_field *field, size_t count)
+{
+    if (field->model == SHAPE_MODEL_METABALL)
+        return sqrt((double)count);
+    return field->model == SHAPE_MODEL_LAYER ? 1 : 1 + (double)field->detail.smoothness;
+}
+
+static double dip(double radius, double a, double b, double c)
+{
+    double h = fmax(radius - b, 0), w = fmax(a, c);
+    return h - sqrt(fmax(h * h - w * w, 0));
+}
+
+static double support_margin(const shape_field *field, const shape_primitives *list)
+{
+    double most = 0, radius = (double)field->layer.planet_radius;
+    for (size_t i = 0; i < list->sphere_count; i++)
+        most = fmax(most, dip(radius, (double)list->spheres[i].radius, (double)list->spheres[i].radius, 0));
+    for (size_t i = 0; i < list->ellipsoid_count; i++) {
+        const shape_ellipsoid *e = &list->ellipsoids[i];
+        most = fmax(most, dip(radius, (double)e->a, (double)e->b, (double)e->c));
+    }
+    return (double)field->detail.displace + (field->model == SHAPE_MODEL_LAYER && radius > 0 ? most : 0);
+}
+
+/* From the unit sphere to the bounds of a layer: the cube, or the cylinder along y. */
+static void stretch_to_bounds(const shape_field *field, double *x, double *y, double *z)
+{
+    double r = sqrt(*x * *x + *z * *z), by = 1;
+    if (field->model == SHAPE_MODEL_LAYER && field->layer.bounds == SHAPE_BOUNDS_BOX)
+        by = fmax(fabs(*x), fmax(fabs(*y), fabs(*z)));
+    if (field->model == SHAPE_MODEL_LAYER && field->layer.bounds == SHAPE_BOUNDS_ALTITUDES)
+        by = fmax(fabs(*y), r);
+    *x /= by, *y /= by, *z /= by;
+}
+
 /* The stored box holds points on every primitive's support, taken by the page's own formula. */
 static void expect_box(bytes file, uint64_t record, const shape_cloud *cloud, const shape_primitives *list)
 {
@@ -134,13 +171,16 @@ static void expect_box(bytes file, uint64_t record, const shape_cloud *cloud, co
         assert_true(box[0] == FLT_MAX && box[2] == FLT_MAX && box[3] == -FLT_MAX && box[5] == -FLT_MAX);
         return;
     }
-    double grow = cloud->field.model == SHAPE_MODEL_METABALL ? sqrt((double)count) : 1;
+    double grow = support_factor(&cloud->field, count), margin = support_margin(&cloud->field, list);
+    if (cloud->field.model == SHAPE_MODEL_GRID)
+        return;
     for (size_t i = 0; i < list->sphere_count; i++) {
         const shape_sphere *s = &list->spheres[i];
         const double centre[3] = {s->x, s->y, s->z};
         for (int axis = 0; axis < 3; axis++) {
-            assert_true(centre[axis] - grow * s->radius >= box[axis] - 1e-4 * reach);
-            assert_true(centre[axis] + grow * s->radius <= box[axis + 3] + 1e-4 * reach);
+            double half = grow * (double)s->radius + margin;
+            assert_true(centre[axis] - half >= box[axis] - 1e-4 * reach);
+            assert_true(centre[axis] + half <= box[axis + 3] + 1e-4 * reach);
         }
     }
     for (size_t i = 0; i < list->ellipsoid_count; i++) {
@@ -148,11 +188,13 @@ static void expect_box(bytes file, uint64_t record, const shape_cloud *cloud, co
         for (int step = 0; step < 64; step++) {
             double u = cos(step * 2.4) * sqrt(1 - pow(step / 31.5 - 1, 2)), w = step / 31.5 - 1;
             double v = sin(step * 2.4) * sqrt(1 - pow(step / 31.5 - 1, 2));
+            stretch_to_bounds(&cloud->field, &u, &v, &w);
             shape_vec3 local = {(float)(grow * e->a * u), (float)(grow * e->b * v), (float)(grow * e->c * w)};
             shape_vec3 p = shape_quat_rotate(e->q, local);
-            assert_true(e->x + p.x >= box[0] - 1e-4 * reach && e->x + p.x <= box[3] + 1e-4 * reach);
-            assert_true(e->y + p.y >= box[1] - 1e-4 * reach && e->y + p.y <= box[4] + 1e-4 * reach);
-            assert_true(e->z + p.z >= box[2] - 1e-4 * reach && e->z + p.z <= box[5] + 1e-4 * reach);
+            const double at[3] = {(double)(e->x + p.x), (double)(e->y + p.y), (double)(e->z + p.z)};
+            for (int axis = 0; axis < 3; axis++)
+                assert_true(at[axis] - margin >= box[axis] - 1e-4 * reach &&
+                            at[axis] + margin <= box[axis + 3] + 1e-4 * reach);
         }
     }
 }
@@ -181,6 +223,41 @@ static void expect_ellipsoids(bytes file, uint64_t row, const shape_primitives *
     }
 }
 
+static void expect_layer(bytes file, uint64_t record, const shape_field *field)
+{
+    const shape_detail *d = &field->detail;
+    const shape_layer zeros = {0}, *l = field->model == SHAPE_MODEL_LAYER ? &field->layer : &zeros;
+    const float reals[23] = {d->smoothness, d->displace,     d->displace_scale,   d->billow,
+                             d->wisp,       d->detail_depth, d->detail_scale,     l->blend,
+                             l->gain,       l->worley_gain,  l->worley_frequency, l->stretch[0],
+                             l->stretch[1], l->stretch[2],   l->coverage,         l->cut,
+                             l->ramp[0],    l->ramp[1],      l->falloff,          l->fade_bottom,
+                             l->fade_top,   l->fade_side,    l->planet_radius};
+    assert_int_equal(number(file, record + 4, 4), l->bounds);
+    assert_int_equal(number(file, record + 8, 4), l->noise);
+    assert_int_equal(number(file, record + 12, 4), l->worley_octaves);
+    for (unsigned i = 0; i < 23; i++)
+        expect_real(file, record + 16 + 4 * i, reals[i]);
+    assert_int_equal(number(file, record + 108, 4), 0);
+}
+
+static void expect_layers(bytes file, uint64_t row, const shape_set *set)
+{
+    uint64_t offset = number(file, row + 16, 8), record = offset + 16, count = 0;
+    assert_int_equal(number(file, row + 4, 4), 1);
+    assert_int_equal(number(file, row + 8, 4), 0);
+    assert_int_equal(number(file, offset, 4), 112);
+    for (size_t i = 0; i < set->cloud_count; i++) {
+        if (!needs_layer_record(&set->clouds[i].field))
+            continue;
+        assert_int_equal(number(file, record, 4), i);
+        expect_layer(file, record, &set->clouds[i].field);
+        record += 112;
+        count++;
+    }
+    assert_true(number(file, offset + 4, 4) == count && number(file, row + 24, 8) == 16 + 112 * count);
+}
+
 static bool row_is(bytes file, uint64_t row, const char *type)
 {
     return !memcmp(file.at + row, type, 4);
@@ -189,9 +266,14 @@ static bool row_is(bytes file, uint64_t row, const char *type)
 /* The chunks behind CLUD and TEXT, against the set's lists and extras. */
 static void expect_chunks(bytes file, uint64_t chunks, const shape_set *set)
 {
-    size_t spheres = 0, ellipsoids = 0, extras = 0, last = 0;
+    size_t spheres = 0, ellipsoids = 0, extras = 0, last = 0, layers = 0;
     for (uint64_t row = 32 + 64; row < 32 + 32 * chunks; row += 32) {
         uint64_t parameter = number(file, row + 8, 4);
+        if (row_is(file, row, "LAYR")) {
+            expect_layers(file, row, set);
+            layers++;
+            continue;
+        }
         if (row_is(file, row, "SPHR") || row_is(file, row, "ELLI")) {
             assert_int_equal(number(file, row + 4, 4), 1);
             assert_true(parameter >= last && parameter < set->list_count);
@@ -213,7 +295,8 @@ static void expect_chunks(bytes file, uint64_t chunks, const shape_set *set)
         if (extra->size)
             assert_memory_equal(file.at + number(file, row + 16, 8), extra->bytes, extra->size);
     }
-    assert_true(extras == set->extra_count);
+    assert_true(extras == set->extra_count && layers == has_layer_record(set));
+    assert_int_equal(number(file, 10, 2), layers);
     for (size_t i = 0; i < set->list_count; i++) {
         spheres -= set->lists[i].sphere_count;
         ellipsoids -= set->lists[i].ellipsoid_count;

@@ -262,7 +262,8 @@ static void store(const cli_option *option, const char *text)
             memcpy(option->value, values, (size_t)count * sizeof *values);
         }
         if (good && option->kind == CLI_RANGE && values[0] > values[1])
-            cli_wrong("--%s %s: the range runs backwards (write the smaller number first)", option->name, text);
+            cli_wrong("--%s %s: the range runs backwards (write the smaller number first)", option->name,
+                      text);
         break;
     }
     if (!good)
@@ -279,7 +280,10 @@ static void append(char *line, size_t room, const char *text)
         snprintf(line + used, room - used, " %s", text);
 }
 
-void cli_append_input(const char *word) { append(inputs_text, sizeof inputs_text, word); }
+void cli_append_input(const char *word)
+{
+    append(inputs_text, sizeof inputs_text, word);
+}
 
 static void record(const cli_option *option, const char *text)
 {
@@ -292,7 +296,7 @@ static void record(const cli_option *option, const char *text)
 
 static const char *argument_name(const cli_option *option)
 {
-    static const char *const names[] = {NULL,    "X", "N", "N", "X,Y,Z", "X,Y", "A|A..B", "WxH", NULL, "TEXT"};
+    static const char *const names[] = {NULL, "X", "N", "N", "X,Y,Z", "X,Y", "A|A..B", "WxH", NULL, "TEXT"};
     return option->choices ? option->choices : names[option->kind];
 }
 
@@ -341,8 +345,8 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
     const cli_option common_options[] = {
         {"output", 'o', CLI_TEXT, &common->output, 0, 0, "FILE", "where to write [-, standard output]",
          &common->output_given, true},
-        {"seed", 0, CLI_SEED, &common->seed, 0, 0, "N", "64-bit seed of everything that is drawn by chance [1]",
-         &common->seed_given, false},
+        {"seed", 0, CLI_SEED, &common->seed, 0, 0, "N",
+         "64-bit seed of everything that is drawn by chance [1]", &common->seed_given, false},
         {"quiet", 'q', CLI_FLAG, &common->quiet, 0, 0, NULL, "no progress, no summary", NULL, true},
         {"help", 0, CLI_FLAG, &show_help, 0, 0, NULL, "this text", NULL, true},
         {"version", 0, CLI_FLAG, &show_version, 0, 0, NULL, "the version", NULL, true},

@@ -27,15 +27,16 @@ typedef enum cli_kind {
 } cli_kind;
 
 typedef struct cli_option {
-    const char *name;    /* long name, without the dashes; NULL ends a table */
-    char letter;         /* short name, or 0 */
+    const char *name; /* long name, without the dashes; NULL ends a table */
+    char letter;      /* short name, or 0 */
     cli_kind kind;
-    void *value;         /* where it goes; holds the default before */
-    double min, max;     /* inclusive; both 0: any finite number */
-    const char *choices; /* CLI_CHOICE: the words; else the argument's name in --help (N, L, X,Y,Z), or NULL */
-    const char *help;    /* one line, with the unit; the default is shown in square brackets at its end */
-    bool *given;         /* set where the option is given; may be NULL */
-    bool unrecorded;     /* leave it out of `made_by`: it changes nothing in the file (-o, -q, --print) */
+    void *value;     /* where it goes; holds the default before */
+    double min, max; /* inclusive; both 0: any finite number */
+    const char
+        *choices;     /* CLI_CHOICE: the words; else the argument's name in --help (N, L, X,Y,Z), or NULL */
+    const char *help; /* one line, with the unit; the default is shown in square brackets at its end */
+    bool *given;      /* set where the option is given; may be NULL */
+    bool unrecorded;  /* leave it out of `made_by`: it changes nothing in the file (-o, -q, --print) */
 } cli_option;
 
 /* A named group of options, shown together in --help. */
@@ -110,10 +111,13 @@ int cli_finish(cli_common *common);
 typedef struct cli_medium {
     int model;
     double extinction, albedo, g, kappa, noise_scale, edge, g2, lobe_mix, droplet, at[3];
+    double smoothness, displace, displace_scale, billow, wisp, detail_depth, detail_scale;
     int64_t octaves;
     int phase;
     bool model_given, extinction_given, albedo_given, phase_given, g_given, kappa_given, octaves_given,
-        noise_scale_given, edge_given, g2_given, lobe_mix_given, droplet_given, at_given;
+        noise_scale_given, edge_given, g2_given, lobe_mix_given, droplet_given, at_given, smoothness_given,
+        displace_given, displace_scale_given, billow_given, wisp_given, detail_depth_given,
+        detail_scale_given;
 } cli_medium;
 
 extern cli_medium cli_medium_values;

@@ -22,6 +22,8 @@ typedef struct report {
 } report;
 
 static const char *const model_names[] = {"uniform", "spheroid", "metaball", "layer", "grid"};
+static const char *const bounds_names[] = {"sphere", "box", "altitudes"};
+static const char *const noise_names[] = {"lattice", "perlin", "worley", "perlin-worley"};
 static const char *const phase_names[] = {"hg", "isotropic", "rayleigh", "mie", "two-lobe"};
 
 /* --- numbers: the shortest text that reads back as the same number --- */
@@ -59,20 +61,13 @@ static void print_doubles(FILE *out, const double *values, int count, const char
 
 /* --- reading --- */
 
-/* Clouds that share a list share the work of going through it: a file of many copies is no slower for them. */
 static shape_box *find_boxes(const shape_set *set)
 {
+    shape_error error;
     shape_box *boxes = calloc(set->cloud_count ? set->cloud_count : 1, sizeof *boxes);
-    size_t *first = calloc(set->list_count ? set->list_count : 1, 2 * sizeof *first);
-    if (!boxes || !first)
+    if (!boxes)
         cli_fail("not enough memory");
-    for (size_t i = 0; i < set->cloud_count; i++) {
-        const shape_cloud *cloud = &set->clouds[i];
-        size_t *known = &first[2 * (size_t)cloud->list + (cloud->field.model == SHAPE_MODEL_METABALL)];
-        boxes[i] = *known ? boxes[*known - 1] : shape_cloud_box(cloud, shape_set_list_const(set, i));
-        *known = *known ? *known : i + 1;
-    }
-    free(first);
+    cli_check(shape_neph_bounds(set, boxes, &error), &error);
     return boxes;
 }
 
@@ -182,6 +177,62 @@ static void print_noise(FILE *out, const shape_field *field)
     fputc('\n', out);
 }
 
+static void print_cells(FILE *out, float scale, int otherwise)
+{
+    if (scale > 0)
+        fprintf(out, ", cells of %g m", (double)scale);
+    else
+        fprintf(out, ", cells of %d noise scales", otherwise);
+}
+
+static void print_detail(FILE *out, const shape_field *field)
+{
+    const shape_detail *d = &field->detail;
+    if (!shape_detail_is_on(d))
+        return;
+    const char *between = "";
+    fputs("  details     ", out);
+    if (d->smoothness > 0) {
+        fprintf(out, "smoothness %g", (double)d->smoothness);
+        between = "; ";
+    }
+    if (d->displace > 0) {
+        fprintf(out, "%sdisplaced by %g m", between, (double)d->displace);
+        print_cells(out, d->displace_scale, 5);
+        between = "; ";
+    }
+    if (d->billow > 0 || d->wisp > 0) {
+        fprintf(out, "%sbillow %g, wisp %g to a depth of %g radii", between, (double)d->billow,
+                (double)d->wisp, d->detail_depth > 0 ? (double)d->detail_depth : 0.5);
+        print_cells(out, d->detail_scale, 2);
+    }
+    fputc('\n', out);
+}
+
+static void print_layer(FILE *out, const shape_field *field)
+{
+    const shape_layer *l = &field->layer;
+    if (field->model != SHAPE_MODEL_LAYER)
+        return;
+    fprintf(out, "  layer       %s of %s noise, coverage %g, ramp %g to %g", bounds_names[l->bounds],
+            noise_names[l->noise], (double)l->coverage, (double)l->ramp[0], (double)l->ramp[1]);
+    if (l->cut > 0)
+        fprintf(out, ", cut %g", (double)l->cut);
+    fprintf(out, ", stretch %g, %g, %g", (double)l->stretch[0], (double)l->stretch[1], (double)l->stretch[2]);
+    if (l->noise != SHAPE_NOISE_WORLEY)
+        fprintf(out, ", gain %g", (double)l->gain);
+    if (l->noise >= SHAPE_NOISE_WORLEY)
+        fprintf(out, ", Worley gain %g, frequency %g, %d octaves", (double)l->worley_gain,
+                (double)l->worley_frequency, l->worley_octaves);
+    if (l->noise == SHAPE_NOISE_PERLIN_WORLEY)
+        fprintf(out, ", blend %g", (double)l->blend);
+    fprintf(out, "\n  fades       falloff %g, bottom %g, top %g, sides %g", (double)l->falloff,
+            (double)l->fade_bottom, (double)l->fade_top, (double)l->fade_side);
+    if (l->planet_radius > 0)
+        fprintf(out, "; %g m from the planet's centre", (double)l->planet_radius);
+    fputc('\n', out);
+}
+
 /* The number (from 1) of the first cloud that has this cloud's list, where that is an earlier one; else 0. */
 static size_t shared_with(const shape_set *set, size_t cloud, const size_t *first)
 {
@@ -208,6 +259,8 @@ static void print_cloud(FILE *out, const report *r, size_t index, const size_t *
     print_frame(out, &cloud->frame);
     print_medium(out, &cloud->medium);
     print_noise(out, &cloud->field);
+    print_detail(out, &cloud->field);
+    print_layer(out, &cloud->field);
     fprintf(out, "  seed        %" PRIu64 "\n", cloud->seed);
     fprintf(out, "  made by     %s\n", cloud->made_by[0] ? cloud->made_by : "not said");
 }
@@ -294,6 +347,62 @@ static void print_json_medium(FILE *out, const shape_cloud *cloud)
     fprintf(out, ", \"octaves\": %d, \"noise_seed\": %" PRIu64 "}", field->octaves, field->seed);
 }
 
+/* A key and a number, behind others. */
+typedef struct json_float {
+    const char *key;
+    float value;
+} json_float;
+
+static void print_json_floats(FILE *out, const json_float *floats, size_t count, const char *between)
+{
+    for (size_t i = 0; i < count; i++) {
+        fprintf(out, "%s\"%s\": ", i ? ", " : between, floats[i].key);
+        print_float(out, floats[i].value);
+    }
+}
+
+/* Only where there is something to say. */
+static void print_json_detail(FILE *out, const shape_detail *d)
+{
+    const json_float floats[] = {{"smoothness", d->smoothness},
+                                 {"displace", d->displace},
+                                 {"displace_scale", d->displace_scale},
+                                 {"billow", d->billow},
+                                 {"wisp", d->wisp},
+                                 {"detail_depth", d->detail_depth},
+                                 {"detail_scale", d->detail_scale}};
+    if (!shape_detail_is_on(d))
+        return;
+    fputs(",\n     \"detail\": {", out);
+    print_json_floats(out, floats, sizeof floats / sizeof *floats, "");
+    fputc('}', out);
+}
+
+static void print_json_layer(FILE *out, const shape_layer *l)
+{
+    const json_float floats[] = {{"blend", l->blend},
+                                 {"gain", l->gain},
+                                 {"worley_gain", l->worley_gain},
+                                 {"worley_frequency", l->worley_frequency},
+                                 {"coverage", l->coverage},
+                                 {"cut", l->cut},
+                                 {"falloff", l->falloff},
+                                 {"fade_bottom", l->fade_bottom},
+                                 {"fade_top", l->fade_top},
+                                 {"fade_side", l->fade_side},
+                                 {"planet_radius", l->planet_radius}};
+    const double stretch[3] = {(double)l->stretch[0], (double)l->stretch[1], (double)l->stretch[2]};
+    const double ramp[2] = {(double)l->ramp[0], (double)l->ramp[1]};
+    fprintf(out, ",\n     \"layer\": {\"bounds\": \"%s\", \"noise\": \"%s\", \"worley_octaves\": %d",
+            bounds_names[l->bounds], noise_names[l->noise], l->worley_octaves);
+    print_json_floats(out, floats, sizeof floats / sizeof *floats, ", ");
+    fputs(", \"stretch\": ", out);
+    print_json_row(out, stretch, 3, true);
+    fputs(", \"ramp\": ", out);
+    print_json_row(out, ramp, 2, true);
+    fputc('}', out);
+}
+
 static void print_json_cloud(FILE *out, const report *r, size_t index)
 {
     const shape_cloud *cloud = &r->set->clouds[index];
@@ -319,6 +428,9 @@ static void print_json_cloud(FILE *out, const report *r, size_t index)
         print_json_row(out, cloud->frame.m[i], 4, i == 2);
     fputs("],\n     \"medium\": ", out);
     print_json_medium(out, cloud);
+    print_json_detail(out, &cloud->field.detail);
+    if (cloud->field.model == SHAPE_MODEL_LAYER)
+        print_json_layer(out, &cloud->field.layer);
     fprintf(out, ",\n     \"seed\": %" PRIu64 ", \"made_by\": ", cloud->seed);
     print_json_text(out, cloud->made_by);
     fputc('}', out);

@@ -21,4 +21,7 @@ shape_status shape_error_memory(shape_error *error)
     return shape_error_set(error, SHAPE_ERROR_MEMORY, "not enough memory (make the cloud smaller)");
 }
 
-const char *shape_version(void) { return NEPHELE_VERSION; }
+const char *shape_version(void)
+{
+    return NEPHELE_VERSION;
+}

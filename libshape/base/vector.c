@@ -27,8 +27,9 @@ shape_quat shape_quat_normalize(shape_quat q)
 
 shape_quat shape_quat_multiply(shape_quat a, shape_quat b)
 {
-    shape_quat q = {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-                    a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+    shape_quat q = {
+        a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+        a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
     return q;
 }
 
@@ -70,9 +71,12 @@ shape_quat shape_quat_from_columns(shape_dvec3 x, shape_dvec3 y, shape_dvec3 z)
 void shape_quat_matrix(shape_quat q, double matrix[3][3])
 {
     double x = q.x, y = q.y, z = q.z, w = q.w;
-    matrix[0][0] = 1 - 2 * (y * y + z * z), matrix[0][1] = 2 * (x * y - z * w), matrix[0][2] = 2 * (x * z + y * w);
-    matrix[1][0] = 2 * (x * y + z * w), matrix[1][1] = 1 - 2 * (x * x + z * z), matrix[1][2] = 2 * (y * z - x * w);
-    matrix[2][0] = 2 * (x * z - y * w), matrix[2][1] = 2 * (y * z + x * w), matrix[2][2] = 1 - 2 * (x * x + y * y);
+    matrix[0][0] = 1 - 2 * (y * y + z * z), matrix[0][1] = 2 * (x * y - z * w),
+    matrix[0][2] = 2 * (x * z + y * w);
+    matrix[1][0] = 2 * (x * y + z * w), matrix[1][1] = 1 - 2 * (x * x + z * z),
+    matrix[1][2] = 2 * (y * z - x * w);
+    matrix[2][0] = 2 * (x * z - y * w), matrix[2][1] = 2 * (y * z + x * w),
+    matrix[2][2] = 1 - 2 * (x * x + y * y);
 }
 
 shape_box shape_box_empty(void)
@@ -142,7 +146,8 @@ shape_frame shape_frame_multiply(const shape_frame *outer, const shape_frame *in
 double shape_frame_determinant(const shape_frame *frame)
 {
     const double(*m)[4] = frame->m;
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 }
 
@@ -173,7 +178,9 @@ void shape_frame_box(const shape_frame *frame, shape_box box, shape_dvec3 *min, 
         shape_dvec3 p = {corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
                          corner & 4 ? box.max.z : box.min.z};
         p = shape_frame_point(frame, p);
-        *min = shape_dvec3_make(p.x < min->x ? p.x : min->x, p.y < min->y ? p.y : min->y, p.z < min->z ? p.z : min->z);
-        *max = shape_dvec3_make(p.x > max->x ? p.x : max->x, p.y > max->y ? p.y : max->y, p.z > max->z ? p.z : max->z);
+        *min = shape_dvec3_make(p.x < min->x ? p.x : min->x, p.y < min->y ? p.y : min->y,
+                                p.z < min->z ? p.z : min->z);
+        *max = shape_dvec3_make(p.x > max->x ? p.x : max->x, p.y > max->y ? p.y : max->y,
+                                p.z > max->z ? p.z : max->z);
     }
 }

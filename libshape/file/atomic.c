@@ -23,7 +23,8 @@ static shape_status read_all(int file, const char *path, size_t max_size, unsign
     unsigned char *buffer = NULL;
     size_t capacity = 0, used = 0;
     struct stat info;
-    if (!fstat(file, &info) && S_ISREG(info.st_mode) && info.st_size > 0 && (size_t)info.st_size <= max_size) {
+    if (!fstat(file, &info) && S_ISREG(info.st_mode) && info.st_size > 0 &&
+        (size_t)info.st_size <= max_size) {
         if (shape_array_reserve((void **)&buffer, &capacity, (size_t)info.st_size + 2, 1, error))
             return SHAPE_ERROR_MEMORY;
     }
@@ -43,7 +44,8 @@ static shape_status read_all(int file, const char *path, size_t max_size, unsign
         used += (size_t)got;
         if (used > max_size) {
             free(buffer);
-            return shape_error_set(error, SHAPE_ERROR_LIMIT, "%s: larger than the limit of %zu bytes", path, max_size);
+            return shape_error_set(error, SHAPE_ERROR_LIMIT, "%s: larger than the limit of %zu bytes", path,
+                                   max_size);
         }
         if (got == 0)
             break;

@@ -17,7 +17,7 @@ bool neph_type_is_valid(const char type[4])
 bool neph_type_is_known(const char type[4])
 {
     return !memcmp(type, "CLUD", 4) || !memcmp(type, "TEXT", 4) || !memcmp(type, "SPHR", 4) ||
-           !memcmp(type, "ELLI", 4);
+           !memcmp(type, "ELLI", 4) || !memcmp(type, "LAYR", 4);
 }
 
 /* How many bytes the UTF-8 character at `text` takes, and its code; 0 where it is none (RFC 3629: no overlong form, no
@@ -68,24 +68,63 @@ static bool is_finite_box(const shape_frame *frame, shape_box box)
            isfinite(max.y) && isfinite(max.z) && min.x <= max.x && min.y <= max.y && min.z <= max.z;
 }
 
-shape_status neph_bounds(const shape_set *set, shape_box *boxes, shape_error *error)
+/* What was found of a list: the last two supports that were asked for, and their boxes. */
+typedef struct known_box {
+    float support[2], margin[2];
+    shape_box box[2];
+    int count; /* how often the list was walked */
+} known_box;
+
+static bool find_known(const known_box *known, float support, float margin, shape_box *box)
 {
-    /* For each list, the first cloud (plus one) that took its box at factor 1 and at the metaballs' factor. */
-    size_t *first = calloc(set->list_count ? set->list_count : 1, 2 * sizeof *first);
-    if (!first)
+    for (int i = 0; i < 2 && i < known->count; i++)
+        if (known->support[i] == support && known->margin[i] == margin) {
+            *box = known->box[i];
+            return true;
+        }
+    return false;
+}
+
+/* *repeats counts the primitives of lists that are walked again. */
+static shape_status find_box(const shape_cloud *cloud, const shape_primitives *list, known_box *known,
+                             size_t *repeats, shape_box *box, shape_error *error)
+{
+    float support = shape_cloud_support(cloud, list), margin = cloud->field.detail.displace;
+    bool layer = cloud->field.model == SHAPE_MODEL_LAYER,
+         curved = layer && cloud->field.layer.planet_radius > 0;
+    support = layer ? -support : support; /* a layer's box is not that of its supports */
+    if (!curved && find_known(known, support, margin, box))
+        return SHAPE_OK;
+    *repeats += known->count ? shape_primitives_count(list) : 0;
+    if (*repeats > NEPH_VISITS_MAX)
+        return shape_error_set(error, SHAPE_ERROR_LIMIT,
+                               "too many clouds share a large list, each with a displacement, smoothness or "
+                               "planet of its own (give them equal ones)");
+    *box = shape_cloud_box(cloud, list);
+    int place = known->count % 2;
+    known->support[place] = curved ? 0 : support;
+    known->margin[place] = margin;
+    known->box[place] = *box;
+    known->count += known->count < 1000 ? 1 : -1;
+    return SHAPE_OK;
+}
+
+shape_status shape_neph_bounds(const shape_set *set, shape_box *boxes, shape_error *error)
+{
+    size_t repeats = 0;
+    known_box *known = calloc(set->list_count ? set->list_count : 1, sizeof *known);
+    if (!known)
         return shape_error_memory(error);
     shape_status status = SHAPE_OK;
     for (size_t i = 0; i < set->cloud_count && !status; i++) {
         const shape_cloud *cloud = &set->clouds[i];
-        const shape_primitives *list = shape_set_list_const(set, i);
-        size_t *known = &first[2 * (size_t)cloud->list + (cloud->field.model == SHAPE_MODEL_METABALL)];
-        boxes[i] = *known ? boxes[*known - 1] : shape_cloud_box(cloud, list);
-        *known = *known ? *known : i + 1;
-        if (!is_finite_box(&cloud->frame, boxes[i]))
+        status =
+            find_box(cloud, shape_set_list_const(set, i), &known[cloud->list], &repeats, &boxes[i], error);
+        if (!status && !is_finite_box(&cloud->frame, boxes[i]))
             status = shape_error_set(
                 error, SHAPE_ERROR_LIMIT,
                 "cloud \"%s\" is too large or too far away for its numbers (scale it down)", cloud->name);
     }
-    free(first);
+    free(known);
     return status;
 }

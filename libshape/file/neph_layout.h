@@ -1,4 +1,4 @@
-/* Private: the byte layout of a .neph file, version 1.0, as docs/neph-format.md fixes it. Every number is written byte
+/* Private: the byte layout of a .neph file, version 1.1, as docs/neph-format.md fixes it. Every number is written byte
  * by byte, least significant first, so neither the host's byte order nor a compiler's padding can reach a file. */
 #ifndef SHAPE_FILE_NEPH_LAYOUT_H
 #define SHAPE_FILE_NEPH_LAYOUT_H
@@ -19,6 +19,8 @@ enum {
     NEPH_CLOUDS_HEAD = 16,    /* before the first cloud record */
     NEPH_CLOUD_RECORD = 208,  /* one cloud, in this minor version */
     NEPH_RECORD_MAX = 65536,  /* one cloud, in any later minor version */
+    NEPH_LAYERS_HEAD = 16,    /* before the first layer record */
+    NEPH_LAYER_RECORD = 112,  /* one cloud's, in this minor version */
     NEPH_SPHERE_SIZE = 16,    /* x y z radius */
     NEPH_ELLIPSOID_SIZE = 48, /* x y z 0, a b c 0, qx qy qz qw */
 };
@@ -43,6 +45,9 @@ enum {
 };
 
 enum { NEPH_FLAG_REQUIRED = 1 };
+
+/* Of primitives walked again by shape_neph_bounds. */
+enum { NEPH_VISITS_MAX = 1 << 28 };
 
 /* The head of the CLUD chunk. */
 enum {
@@ -72,6 +77,32 @@ enum {
     NEPH_CLOUD_G2 = 192,
     NEPH_CLOUD_LOBE_MIX = 196,
     NEPH_CLOUD_DROPLET = 200, /* 4 reserved bytes follow */
+};
+
+/* The head of the LAYR chunk. */
+enum {
+    NEPH_LAYERS_RECORD_SIZE = 0, /* u32 */
+    NEPH_LAYERS_COUNT = 4,       /* u32; 8 reserved bytes follow */
+};
+
+/* A layer record. */
+enum {
+    NEPH_LAYER_CLOUD = 0, /* u32 */
+    NEPH_LAYER_BOUNDS = 4,
+    NEPH_LAYER_NOISE = 8,
+    NEPH_LAYER_WORLEY_OCTAVES = 12,
+    NEPH_LAYER_DETAIL = 16, /* 7 f32, in the order of shape_detail */
+    NEPH_LAYER_BLEND = 44,  /* f32, and so on */
+    NEPH_LAYER_GAIN = 48,
+    NEPH_LAYER_WORLEY_GAIN = 52,
+    NEPH_LAYER_WORLEY_FREQUENCY = 56,
+    NEPH_LAYER_STRETCH = 60, /* 3 f32 */
+    NEPH_LAYER_COVERAGE = 72,
+    NEPH_LAYER_CUT = 76,
+    NEPH_LAYER_RAMP = 80, /* 2 f32 */
+    NEPH_LAYER_FALLOFF = 88,
+    NEPH_LAYER_FADES = 92,          /* 3 f32: bottom, top, sides */
+    NEPH_LAYER_PLANET_RADIUS = 104, /* 4 reserved bytes follow */
 };
 
 /* Carriage return, line feed, control-Z and a byte above 127: what text-mode copying damages, as in PNG. */
@@ -192,6 +223,22 @@ static inline uint64_t neph_aligned(uint64_t offset)
     return (offset + NEPH_ALIGN - 1) / NEPH_ALIGN * NEPH_ALIGN;
 }
 
+/* Numbers of enumerations and small counts; what is too large for an int stays out of every range. */
+static inline int neph_get_small(const unsigned char *from)
+{
+    uint32_t value = neph_get_u32(from);
+    return value > 0xffff ? 0xffff : (int)value;
+}
+
+/* Whether a cloud's field has anything that only a layer record can hold. */
+bool neph_needs_layer(const shape_field *field);
+/* How many clouds of a set do. */
+size_t neph_count_layers(const shape_set *set);
+/* Writes, and reads back, what a record holds of a field. What the model does not have is written as zeros; read, the
+ * layer of a model other than layer is left as it is. */
+void neph_put_layer(unsigned char *to, uint32_t cloud, const shape_field *field);
+void neph_get_layer(const unsigned char *from, shape_field *field);
+
 /* Four characters, each A-Z, a-z or 0-9. */
 bool neph_type_is_valid(const char type[4]);
 /* One of the types of this version. */
@@ -199,10 +246,5 @@ bool neph_type_is_known(const char type[4]);
 
 /* A cloud's name and made_by, as the format wants them: UTF-8 without control characters. */
 bool neph_text_is_plain(const char *text, size_t length);
-
-/* Writes the box around each cloud's supports, in the cloud's frame, into boxes[set->cloud_count]; each list is walked
- * at most twice, however many clouds share it. Errors: memory; a box that single precision, or a placed box that double
- * precision, cannot hold. The set has passed shape_set_check. */
-shape_status neph_bounds(const shape_set *set, shape_box *boxes, shape_error *error);
 
 #endif

@@ -14,6 +14,7 @@ typedef struct reader {
     uint32_t chunk_count;
     unsigned minor;
     uint32_t cloud_count, list_count, record_size;
+    const unsigned char *layers; /* the LAYR chunk, or NULL */
     shape_error *error;
 } reader;
 
@@ -138,6 +139,7 @@ static shape_status check_place(const reader *r, const chunk *c, uint64_t expect
 typedef struct order {
     uint32_t lists;       /* how many have begun */
     bool ellipsoids_done; /* the last list has its ELLI chunk */
+    bool layers;
 } order;
 
 /* Primitive chunks come by list: SPHR 0, ELLI 0, SPHR 1, ...; a list may lack either, not both. */
@@ -155,7 +157,25 @@ static shape_status check_primitives(const reader *r, const chunk *c, order *o)
     return SHAPE_OK;
 }
 
-static shape_status check_kind(const reader *r, const chunk *c, order *o)
+static shape_status check_layers(reader *r, const chunk *c, order *o)
+{
+    const unsigned char *bytes = r->bytes + c->offset;
+    if (o->layers)
+        return refuse_chunk(r, c, "comes a second time (make the file again)");
+    o->layers = true;
+    if (c->length < NEPH_LAYERS_HEAD)
+        return refuse_chunk(r, c, "is too short (make the file again)");
+    uint32_t size = neph_get_u32(bytes + NEPH_LAYERS_RECORD_SIZE);
+    uint32_t count = neph_get_u32(bytes + NEPH_LAYERS_COUNT);
+    if (size < NEPH_LAYER_RECORD || size > NEPH_RECORD_MAX || size % 8)
+        return refuse_chunk(r, c, "has records of a size that it must not have (make the file again)");
+    if (c->length - NEPH_LAYERS_HEAD != (uint64_t)count * size)
+        return refuse_chunk(r, c, "declares a number of records that it does not hold (make the file again)");
+    r->layers = bytes;
+    return SHAPE_OK;
+}
+
+static shape_status check_kind(reader *r, const chunk *c, order *o)
 {
     static const char *const first[2] = {"CLUD", "TEXT"};
     if ((c->index < 2 && strcmp(c->type, first[c->index])) ||
@@ -167,6 +187,8 @@ static shape_status check_kind(const reader *r, const chunk *c, order *o)
                         : SHAPE_OK;
     if (!required)
         return refuse_chunk(r, c, "lacks the flag \"required\" (make the file again)");
+    if (!strcmp(c->type, "LAYR"))
+        return check_layers(r, c, o);
     return c->index < 2 ? SHAPE_OK : check_primitives(r, c, o);
 }
 
@@ -225,24 +247,18 @@ static bool get_text(const reader *r, const unsigned char *place, size_t shortes
     return true;
 }
 
-/* Numbers of enumerations and small counts; what is too large for an int stays out of every range. */
-static int get_small(const unsigned char *from)
-{
-    uint32_t value = neph_get_u32(from);
-    return value > 0xffff ? 0xffff : (int)value;
-}
-
 static void get_field_and_medium(const unsigned char *from, shape_cloud *cloud)
 {
-    cloud->field = (shape_field){.model = (shape_model)get_small(from + NEPH_CLOUD_MODEL),
+    cloud->field = (shape_field){.model = (shape_model)neph_get_small(from + NEPH_CLOUD_MODEL),
                                  .kappa = neph_get_f32(from + NEPH_CLOUD_KAPPA),
-                                 .octaves = get_small(from + NEPH_CLOUD_OCTAVES),
+                                 .octaves = neph_get_small(from + NEPH_CLOUD_OCTAVES),
                                  .noise_scale = neph_get_f32(from + NEPH_CLOUD_NOISE_SCALE),
                                  .edge = neph_get_f32(from + NEPH_CLOUD_EDGE),
-                                 .seed = neph_get_u64(from + NEPH_CLOUD_NOISE_SEED)};
+                                 .seed = neph_get_u64(from + NEPH_CLOUD_NOISE_SEED),
+                                 .layer = shape_layer_defaults()};
     cloud->medium = (shape_medium){.extinction = neph_get_f32(from + NEPH_CLOUD_EXTINCTION),
                                    .albedo = neph_get_f32(from + NEPH_CLOUD_ALBEDO),
-                                   .phase = (shape_phase_kind)get_small(from + NEPH_CLOUD_PHASE),
+                                   .phase = (shape_phase_kind)neph_get_small(from + NEPH_CLOUD_PHASE),
                                    .g = neph_get_f32(from + NEPH_CLOUD_G),
                                    .g2 = neph_get_f32(from + NEPH_CLOUD_G2),
                                    .lobe_mix = neph_get_f32(from + NEPH_CLOUD_LOBE_MIX),
@@ -290,6 +306,28 @@ static shape_status get_clouds(const reader *r, shape_set *set)
     return SHAPE_OK;
 }
 
+/* The settings of the LAYR chunk go to the clouds that it names, in rising order. */
+static shape_status get_layers(const reader *r, shape_set *set)
+{
+    if (!r->layers)
+        return SHAPE_OK;
+    uint32_t size = neph_get_u32(r->layers + NEPH_LAYERS_RECORD_SIZE), next = 0;
+    uint32_t count = neph_get_u32(r->layers + NEPH_LAYERS_COUNT);
+    for (uint32_t i = 0; i < count; i++) {
+        const unsigned char *from = r->layers + NEPH_LAYERS_HEAD + (uint64_t)i * size;
+        uint32_t cloud = neph_get_u32(from + NEPH_LAYER_CLOUD);
+        if (cloud >= r->cloud_count || cloud < next)
+            return refuse(r, "the LAYR chunk names a cloud that is not there, or not in order (make the file "
+                             "again)");
+        next = cloud + 1;
+        shape_error inner;
+        neph_get_layer(from, &set->clouds[cloud].field);
+        if (shape_field_check(&set->clouds[cloud].field, &inner))
+            return refuse_cloud(r, cloud, inner.text);
+    }
+    return SHAPE_OK;
+}
+
 static shape_status get_spheres(const reader *r, const chunk *c, shape_primitives *list)
 {
     size_t count = (size_t)(c->length / NEPH_SPHERE_SIZE);
@@ -327,7 +365,7 @@ static shape_status get_lists_and_extras(const reader *r, shape_set *set)
             status = get_spheres(r, &c, &set->lists[c.parameter]);
         else if (!strcmp(c.type, "ELLI"))
             status = get_ellipsoids(r, &c, &set->lists[c.parameter]);
-        else
+        else if (strcmp(c.type, "LAYR"))
             status = shape_set_add_extra(set, c.type, c.parameter, r->bytes + c.offset, (size_t)c.length,
                                          r->error);
         if (status)
@@ -347,7 +385,7 @@ static bool box_is_right(const unsigned char *stored, const shape_cloud *cloud, 
             return false;
         reach = fmaxf(reach, fabsf(want[i]));
     }
-    if (shape_box_is_empty(box) || cloud->field.model > SHAPE_MODEL_METABALL)
+    if (shape_box_is_empty(box) || cloud->field.model > SHAPE_MODEL_LAYER)
         return true;
     double tolerance = 1e-4 * (double)reach;
     for (int i = 0; i < 3; i++)
@@ -361,7 +399,7 @@ static shape_status check_boxes(const reader *r, const shape_set *set)
     shape_box *boxes = malloc((set->cloud_count ? set->cloud_count : 1) * sizeof *boxes);
     if (!boxes)
         return shape_error_memory(r->error);
-    shape_status status = neph_bounds(set, boxes, r->error);
+    shape_status status = shape_neph_bounds(set, boxes, r->error);
     for (uint32_t i = 0; i < r->cloud_count && !status; i++)
         if (!box_is_right(get_record(r, i) + NEPH_CLOUD_BOX, &set->clouds[i], boxes[i]))
             status =
@@ -373,6 +411,8 @@ static shape_status check_boxes(const reader *r, const shape_set *set)
 static shape_status get_set(const reader *r, shape_set *set)
 {
     shape_status status = get_clouds(r, set);
+    if (!status)
+        status = get_layers(r, set);
     if (!status)
         status = get_lists_and_extras(r, set);
     if (!status)

@@ -1,5 +1,6 @@
 /* A set as the bytes of a .neph file (docs/neph-format.md). The size is known before the first byte is written, the
- * memory comes zeroed, and chunks follow one another in the order of the table: CLUD, TEXT, the lists, the extras. */
+ * memory comes zeroed, and chunks follow one another in the order of the table: CLUD, TEXT, LAYR where
+ * a cloud needs it, the lists, the extras. */
 #include "shape/neph.h"
 
 #include <stdlib.h>
@@ -67,7 +68,7 @@ static shape_status check_texts_and_extras(const shape_set *set, shape_error *er
             status = shape_error_set(
                 error, SHAPE_ERROR_ARGUMENT,
                 "extra chunk %zu has a type that it must not have (four letters or digits, not "
-                "one of CLUD, TEXT, SPHR, ELLI)",
+                "one of CLUD, TEXT, LAYR, SPHR, ELLI)",
                 i);
     return status;
 }
@@ -90,7 +91,8 @@ static bool list_has_spheres(const shape_primitives *list)
 /* The number of chunks and the size of the whole file; false where a number of the format cannot hold them. */
 static bool measure(const shape_set *set, uint64_t *chunks, uint64_t *size)
 {
-    *chunks = 2 + (uint64_t)set->extra_count;
+    size_t layers = neph_count_layers(set);
+    *chunks = 2 + (uint64_t)(layers > 0) + (uint64_t)set->extra_count;
     for (size_t i = 0; i < set->list_count; i++)
         *chunks += (uint64_t)list_has_spheres(&set->lists[i]) + (set->lists[i].ellipsoid_count > 0);
     if (*chunks > UINT32_MAX || set->list_count > UINT32_MAX || set->cloud_count > UINT32_MAX ||
@@ -101,6 +103,8 @@ static bool measure(const shape_set *set, uint64_t *chunks, uint64_t *size)
     *size += NEPH_CLOUDS_HEAD;
     fits = fits && add_chunk_size(size, set->cloud_count, NEPH_CLOUD_RECORD) &&
            add_chunk_size(size, text_size(set), 1);
+    *size += layers ? NEPH_LAYERS_HEAD : 0;
+    fits = fits && add_chunk_size(size, layers, NEPH_LAYER_RECORD);
     for (size_t i = 0; i < set->list_count && fits; i++)
         fits = add_chunk_size(size, set->lists[i].sphere_count, NEPH_SPHERE_SIZE) &&
                add_chunk_size(size, set->lists[i].ellipsoid_count, NEPH_ELLIPSOID_SIZE);
@@ -189,6 +193,24 @@ static void put_texts(writer *w)
     end_chunk(w, "TEXT", NEPH_FLAG_REQUIRED, 0, place.end);
 }
 
+static void put_layers(writer *w)
+{
+    const shape_set *set = w->set;
+    size_t layers = neph_count_layers(set);
+    if (!layers)
+        return;
+    unsigned char *to = chunk_bytes(w);
+    neph_put_u32(to + NEPH_LAYERS_RECORD_SIZE, NEPH_LAYER_RECORD);
+    neph_put_u32(to + NEPH_LAYERS_COUNT, (uint32_t)layers);
+    to += NEPH_LAYERS_HEAD;
+    for (size_t i = 0; i < set->cloud_count; i++)
+        if (neph_needs_layer(&set->clouds[i].field)) {
+            neph_put_layer(to, (uint32_t)i, &set->clouds[i].field);
+            to += NEPH_LAYER_RECORD;
+        }
+    end_chunk(w, "LAYR", NEPH_FLAG_REQUIRED, 0, (uint64_t)(to - chunk_bytes(w)));
+}
+
 static void put_ellipsoids(unsigned char *to, const shape_primitives *list)
 {
     neph_put_floats(to, (const float *)(const void *)list->ellipsoids, 12 * list->ellipsoid_count);
@@ -223,11 +245,12 @@ static void put_extras(writer *w)
     }
 }
 
-static void put_header(unsigned char *to, uint64_t chunks, uint64_t size)
+/* The lowest minor version that has all that is in the file, so that files without layers stay as they were. */
+static void put_header(unsigned char *to, unsigned minor, uint64_t chunks, uint64_t size)
 {
     memcpy(to + NEPH_AT_MAGIC, NEPH_MAGIC, 8);
     neph_put_u16(to + NEPH_AT_MAJOR, SHAPE_NEPH_MAJOR);
-    neph_put_u16(to + NEPH_AT_MINOR, SHAPE_NEPH_MINOR);
+    neph_put_u16(to + NEPH_AT_MINOR, (uint16_t)minor);
     neph_put_u32(to + NEPH_AT_CHUNKS, (uint32_t)chunks);
     neph_put_u64(to + NEPH_AT_FILE_SIZE, size);
 }
@@ -241,9 +264,10 @@ static void put_file(const shape_set *set, const shape_box *boxes, uint64_t chun
                 .bytes = bytes,
                 .entry = bytes + NEPH_HEADER_SIZE,
                 .offset = neph_aligned(table_end + NEPH_TABLE_CRC_SIZE)};
-    put_header(bytes, chunks, size);
+    put_header(bytes, neph_count_layers(set) ? 1 : 0, chunks, size);
     put_clouds(&w);
     put_texts(&w);
+    put_layers(&w);
     for (size_t i = 0; i < set->list_count; i++)
         put_list(&w, i);
     put_extras(&w);
@@ -265,7 +289,7 @@ shape_status shape_neph_encode(const shape_set *set, unsigned char **bytes, size
     if (!boxes || !out)
         status = shape_error_memory(error);
     if (!status)
-        status = neph_bounds(set, boxes, error);
+        status = shape_neph_bounds(set, boxes, error);
     if (!status) {
         put_file(set, boxes, chunks, total, out);
         *bytes = out;

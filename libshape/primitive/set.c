@@ -10,8 +10,13 @@
 
 shape_field shape_field_defaults(void)
 {
-    shape_field field = {
-        .model = SHAPE_MODEL_SPHEROID, .kappa = 0.5f, .octaves = 5, .noise_scale = 0, .edge = 4.2f, .seed = 1};
+    shape_field field = {.model = SHAPE_MODEL_SPHEROID,
+                         .kappa = 0.5f,
+                         .octaves = 5,
+                         .noise_scale = 0,
+                         .edge = 4.2f,
+                         .seed = 1};
+    field.layer = shape_layer_defaults();
     return field;
 }
 
@@ -30,21 +35,6 @@ shape_medium shape_medium_defaults(void)
 static shape_status out_of_range(const char *what, double value, const char *range, shape_error *error)
 {
     return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "%s is %g (it must be %s)", what, value, range);
-}
-
-shape_status shape_field_check(const shape_field *field, shape_error *error)
-{
-    if ((int)field->model < SHAPE_MODEL_UNIFORM || field->model > SHAPE_MODEL_GRID)
-        return out_of_range("the field model", field->model, "a known model", error);
-    if (!(field->kappa >= 0 && field->kappa <= 1))
-        return out_of_range("kappa", field->kappa, "0 to 1", error);
-    if (field->octaves < 1 || field->octaves > 16)
-        return out_of_range("octaves", field->octaves, "1 to 16", error);
-    if (!(field->noise_scale >= 0 && field->noise_scale <= 1e9f))
-        return out_of_range("noise-scale", field->noise_scale, "above 0, at most 1e9", error);
-    if (!(field->edge >= 0 && field->edge <= 1e9f))
-        return out_of_range("edge", field->edge, "0 to 1e9", error);
-    return SHAPE_OK;
 }
 
 shape_status shape_medium_check(const shape_medium *medium, shape_error *error)
@@ -119,8 +109,8 @@ static void choose_name(const shape_set *set, const char *wanted, char name[SHAP
 
 static shape_status reserve_cloud(shape_set *set, shape_error *error)
 {
-    return shape_array_reserve((void **)&set->clouds, &set->cloud_capacity, set->cloud_count + 1, sizeof *set->clouds,
-                               error);
+    return shape_array_reserve((void **)&set->clouds, &set->cloud_capacity, set->cloud_count + 1,
+                               sizeof *set->clouds, error);
 }
 
 shape_status shape_set_add_cloud(shape_set *set, const char *name, size_t *index, shape_error *error)
@@ -143,7 +133,8 @@ shape_status shape_set_add_cloud(shape_set *set, const char *name, size_t *index
     return SHAPE_OK;
 }
 
-shape_status shape_set_add_copy(shape_set *set, size_t of, const shape_frame *frame, size_t *index, shape_error *error)
+shape_status shape_set_add_copy(shape_set *set, size_t of, const shape_frame *frame, size_t *index,
+                                shape_error *error)
 {
     if (of >= set->cloud_count)
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "there is no cloud number %zu to copy", of);
@@ -160,14 +151,14 @@ shape_status shape_set_add_copy(shape_set *set, size_t of, const shape_frame *fr
     return SHAPE_OK;
 }
 
-shape_status shape_set_add_extra(shape_set *set, const char type[4], uint32_t list, const void *bytes, size_t size,
-                                 shape_error *error)
+shape_status shape_set_add_extra(shape_set *set, const char type[4], uint32_t list, const void *bytes,
+                                 size_t size, shape_error *error)
 {
     unsigned char *copy = malloc(size ? size : 1);
     if (!copy)
         return shape_error_memory(error);
-    if (shape_array_reserve((void **)&set->extras, &set->extra_capacity, set->extra_count + 1, sizeof *set->extras,
-                            error)) {
+    if (shape_array_reserve((void **)&set->extras, &set->extra_capacity, set->extra_count + 1,
+                            sizeof *set->extras, error)) {
         free(copy);
         return SHAPE_ERROR_MEMORY;
     }
@@ -181,23 +172,33 @@ shape_status shape_set_add_extra(shape_set *set, const char type[4], uint32_t li
     return SHAPE_OK;
 }
 
-shape_primitives *shape_set_list(shape_set *set, size_t cloud) { return &set->lists[set->clouds[cloud].list]; }
+shape_primitives *shape_set_list(shape_set *set, size_t cloud)
+{
+    return &set->lists[set->clouds[cloud].list];
+}
 
 const shape_primitives *shape_set_list_const(const shape_set *set, size_t cloud)
 {
     return &set->lists[set->clouds[cloud].list];
 }
 
-static bool finite3(float x, float y, float z) { return isfinite(x) && isfinite(y) && isfinite(z); }
+static bool finite3(float x, float y, float z)
+{
+    return isfinite(x) && isfinite(y) && isfinite(z);
+}
 
-static bool positive(float x) { return x > 0 && isfinite(x); }
+static bool positive(float x)
+{
+    return x > 0 && isfinite(x);
+}
 
 static shape_status check_sphere(const shape_sphere *s, shape_error *error)
 {
     if (!finite3(s->x, s->y, s->z) || !positive(s->radius))
-        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
-                               "a sphere has centre %g,%g,%g and radius %g (they must be finite, the radius above 0)",
-                               (double)s->x, (double)s->y, (double)s->z, (double)s->radius);
+        return shape_error_set(
+            error, SHAPE_ERROR_ARGUMENT,
+            "a sphere has centre %g,%g,%g and radius %g (they must be finite, the radius above 0)",
+            (double)s->x, (double)s->y, (double)s->z, (double)s->radius);
     return SHAPE_OK;
 }
 
@@ -212,9 +213,11 @@ static shape_status check_ellipsoid(const shape_ellipsoid *e, shape_error *error
     return SHAPE_OK;
 }
 
-shape_status shape_primitives_reserve(shape_primitives *list, size_t spheres, size_t ellipsoids, shape_error *error)
+shape_status shape_primitives_reserve(shape_primitives *list, size_t spheres, size_t ellipsoids,
+                                      shape_error *error)
 {
-    if (shape_array_reserve((void **)&list->spheres, &list->sphere_capacity, spheres, sizeof *list->spheres, error))
+    if (shape_array_reserve((void **)&list->spheres, &list->sphere_capacity, spheres, sizeof *list->spheres,
+                            error))
         return SHAPE_ERROR_MEMORY;
     return shape_array_reserve((void **)&list->ellipsoids, &list->ellipsoid_capacity, ellipsoids,
                                sizeof *list->ellipsoids, error);
@@ -230,7 +233,8 @@ shape_status shape_primitives_add_sphere(shape_primitives *list, shape_sphere sp
     return status;
 }
 
-shape_status shape_primitives_add_ellipsoid(shape_primitives *list, shape_ellipsoid ellipsoid, shape_error *error)
+shape_status shape_primitives_add_ellipsoid(shape_primitives *list, shape_ellipsoid ellipsoid,
+                                            shape_error *error)
 {
     shape_status status = check_ellipsoid(&ellipsoid, error);
     if (!status)
@@ -243,7 +247,10 @@ shape_status shape_primitives_add_ellipsoid(shape_primitives *list, shape_ellips
     return SHAPE_OK;
 }
 
-size_t shape_primitives_count(const shape_primitives *list) { return list->sphere_count + list->ellipsoid_count; }
+size_t shape_primitives_count(const shape_primitives *list)
+{
+    return list->sphere_count + list->ellipsoid_count;
+}
 
 shape_box shape_sphere_box(const shape_sphere *s, float grow)
 {
@@ -262,22 +269,6 @@ shape_box shape_ellipsoid_box(const shape_ellipsoid *e, float grow)
                               m[i][2] * m[i][2] * e->c * e->c);
     shape_box box = {{(float)(e->x - half[0]), (float)(e->y - half[1]), (float)(e->z - half[2])},
                      {(float)(e->x + half[0]), (float)(e->y + half[1]), (float)(e->z + half[2])}};
-    return box;
-}
-
-float shape_cloud_support(const shape_cloud *cloud, const shape_primitives *list)
-{
-    return cloud->field.model == SHAPE_MODEL_METABALL ? sqrtf((float)shape_primitives_count(list)) : 1.0f;
-}
-
-shape_box shape_cloud_box(const shape_cloud *cloud, const shape_primitives *list)
-{
-    float grow = shape_cloud_support(cloud, list);
-    shape_box box = shape_box_empty();
-    for (size_t i = 0; i < list->sphere_count; i++)
-        box = shape_box_join(box, shape_sphere_box(&list->spheres[i], grow));
-    for (size_t i = 0; i < list->ellipsoid_count; i++)
-        box = shape_box_join(box, shape_ellipsoid_box(&list->ellipsoids[i], grow));
     return box;
 }
 
@@ -313,7 +304,8 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-shape_status shape_cloud_choose_noise_scale(shape_cloud *cloud, const shape_primitives *list, shape_error *error)
+shape_status shape_cloud_choose_noise_scale(shape_cloud *cloud, const shape_primitives *list,
+                                            shape_error *error)
 {
     if (cloud->field.noise_scale > 0)
         return SHAPE_OK;
@@ -348,8 +340,8 @@ static shape_status check_cloud(const shape_set *set, const shape_cloud *cloud, 
                                    cloud->name);
     shape_frame inverse;
     if (!shape_frame_invert(&cloud->frame, &inverse))
-        return shape_error_set(error, SHAPE_ERROR_FORMAT, "cloud \"%s\" has a frame without an inverse (a zero scale)",
-                               cloud->name);
+        return shape_error_set(error, SHAPE_ERROR_FORMAT,
+                               "cloud \"%s\" has a frame without an inverse (a zero scale)", cloud->name);
     shape_status status = shape_field_check(&cloud->field, error);
     return status ? status : shape_medium_check(&cloud->medium, error);
 }
@@ -372,7 +364,8 @@ static shape_status check_names(const shape_set *set, shape_error *error)
     shape_status status = SHAPE_OK;
     for (size_t i = 1; i < set->cloud_count && !status; i++)
         if (!strcmp(sorted[i - 1]->name, sorted[i]->name))
-            status = shape_error_set(error, SHAPE_ERROR_FORMAT, "two clouds are called \"%s\"", sorted[i]->name);
+            status =
+                shape_error_set(error, SHAPE_ERROR_FORMAT, "two clouds are called \"%s\"", sorted[i]->name);
     free(sorted);
     return status;
 }
@@ -391,8 +384,9 @@ shape_status shape_set_check(const shape_set *set, shape_error *error)
             status = check_ellipsoid(&list->ellipsoids[i], error);
             float norm = q->x * q->x + q->y * q->y + q->z * q->z + q->w * q->w;
             if (!status && !(fabsf(norm - 1) <= 2e-3f))
-                status = shape_error_set(error, SHAPE_ERROR_FORMAT, "an ellipsoid's quaternion has length %g, not 1",
-                                         (double)sqrtf(norm));
+                status =
+                    shape_error_set(error, SHAPE_ERROR_FORMAT,
+                                    "an ellipsoid's quaternion has length %g, not 1", (double)sqrtf(norm));
         }
     }
     return status;

@@ -44,21 +44,77 @@ typedef enum shape_model {
     SHAPE_MODEL_GRID = 4      /* a voxel grid, kept outside the set */
 } shape_model;
 
+/* What may be added to the field of any cloud made of primitives; docs/fields.md has the formulas. All zero: nothing.
+ * u is the distance from a primitive's centre in units of its radius, 1 on its surface. */
+typedef struct shape_detail {
+    float
+        smoothness; /* smooth union: two surfaces that meet bulge by at most this share of their radius, 0 to 1;
+                            not for metaball and layer, which blend by themselves */
+    float displace; /* how far vector noise moves the query point at most [m, cloud's frame], 0 to 1e9 */
+    float displace_scale; /* edge of a cell of that noise [m], 0 to 1e9; 0: five times noise_scale */
+    float billow,
+        wisp; /* share of detail_depth that puffs erode at the cloud's top, and wisps at its base, 0 to 1;
+                            not for layer */
+    float detail_depth; /* how deep they reach, as a share of the radius, 0 to 1; 0: a half */
+    float detail_scale; /* edge of a cell of their noise [m], 0 to 1e9; 0: twice noise_scale */
+} shape_detail;
+
+/* What a primitive of a layer cloud bounds. v is a point in the space where the primitive is the unit ball. */
+typedef enum shape_bounds {
+    SHAPE_BOUNDS_SPHERE = 0,   /* the primitive itself: |v| <= 1 */
+    SHAPE_BOUNDS_BOX = 1,      /* the box that touches it: |v_x|, |v_y|, |v_z| <= 1 */
+    SHAPE_BOUNDS_ALTITUDES = 2 /* two altitudes, |v_y| <= 1, out to the primitive's rim, v_x^2 + v_z^2 <= 1 */
+} shape_bounds;
+
+typedef enum shape_noise_kind {
+    SHAPE_NOISE_LATTICE = 0,      /* Jiménez 2018 Eq. 1 */
+    SHAPE_NOISE_PERLIN = 1,       /* Perlin 2002 */
+    SHAPE_NOISE_WORLEY = 2,       /* 1 - F1 of Worley 1996 */
+    SHAPE_NOISE_PERLIN_WORLEY = 3 /* both, mixed by `blend` (Páleník 2016 section 5.1) */
+} shape_noise_kind;
+
+/* A bounded noise volume: the field of SHAPE_MODEL_LAYER. Each primitive of the cloud bounds a piece of it. octaves and
+ * noise_scale of the field (metres a cell, that is 1 / frequency) are those of its noise. */
+typedef struct shape_layer {
+    shape_bounds bounds;
+    shape_noise_kind noise;
+    float blend;            /* perlin-worley: the share of Perlin, 0 to 1; default 0.5 */
+    float gain;             /* contrast of lattice or Perlin noise about its middle, 0 to 100; default 1 */
+    float worley_gain;      /* the same of Worley noise */
+    float worley_frequency; /* Worley cells a cell of noise_scale, 1e-3 to 1e3; default 1 */
+    int worley_octaves;     /* 1 to 8; default 3 */
+    float stretch[3];       /* of the cells along x, y, z, 1e-3 to 1e3; default 1 */
+    float coverage;         /* 0: nothing, 0.5: the noise as it is, 1: full; default 0.5 */
+    float cut;              /* noise up to here is nothing, the rest is stretched, 0 to below 1; default 0 */
+    float ramp[2]; /* A, B: no density up to A, all from B on, smooth between, 0 <= A <= B <= 1; default
+                               0.45, 0.65 */
+    float falloff; /* share of the radius |v| over which the layer thins out to nothing, 0 to 1; default 0 */
+    float fade_bottom,
+        fade_top;    /* the same, shares of its thickness at its base and top, 0 to 1; default 0 */
+    float fade_side; /* the same, a share of its half width at its sides; default 0 */
+    float
+        planet_radius; /* altitudes: from the planet's centre, straight below the primitive's, to the primitive's
+                               centre [m, cloud's frame], 0 to 1e9; default 0: flat */
+} shape_layer;
+
 typedef struct shape_field {
     shape_model model;
-    float kappa;       /* share of noise in the spheroid's threshold, 0 to 1; default 0.5 */
-    int octaves;       /* of the fBm noise, 1 to 16; default 5 */
-    float noise_scale; /* edge of a lattice cell of the first octave [m, cloud's frame], > 0; 0: not chosen yet, see
+    float kappa; /* share of noise in the spheroid's threshold, 0 to 1; default 0.5 */
+    int octaves; /* of the fBm noise, 1 to 16; default 5 */
+    float
+        noise_scale; /* edge of a lattice cell of the first octave [m, cloud's frame], > 0; 0: not chosen yet, see
                           shape_cloud_choose_noise_scale */
-    float edge;        /* metaball threshold on the noise, >= 0; default 4.2 */
-    uint64_t seed;     /* of the noise lattice */
+    float edge;      /* metaball threshold on the noise, >= 0; default 4.2 */
+    uint64_t seed;       /* of the noise lattice */
+    shape_detail detail; /* default all 0: none */
+    shape_layer layer;   /* of the layer model only; others leave it unread, and files leave it out */
 } shape_field;
 
 typedef enum shape_phase_kind {
     SHAPE_PHASE_HG = 0, /* Henyey and Greenstein 1941 */
     SHAPE_PHASE_ISOTROPIC = 1,
     SHAPE_PHASE_RAYLEIGH = 2,
-    SHAPE_PHASE_MIE = 3,    /* cloud droplets, the fit of Jendersie and d'Eon 2023 */
+    SHAPE_PHASE_MIE = 3,     /* cloud droplets, the fit of Jendersie and d'Eon 2023 */
     SHAPE_PHASE_TWO_LOBE = 4 /* a mix of two Henyey-Greenstein lobes */
 } shape_phase_kind;
 
@@ -102,6 +158,9 @@ typedef struct shape_set {
 
 shape_field shape_field_defaults(void);
 shape_medium shape_medium_defaults(void);
+shape_layer shape_layer_defaults(void);
+/* Whether any detail changes the field. */
+bool shape_detail_is_on(const shape_detail *detail);
 /* Checks every member's range; the error names the member. */
 shape_status shape_field_check(const shape_field *field, shape_error *error);
 shape_status shape_medium_check(const shape_medium *medium, shape_error *error);
@@ -114,10 +173,11 @@ void shape_set_destroy(shape_set *set); /* NULL is allowed */
  * Pointers into set->clouds and set->lists end with the call. A name that is taken gets "-2", "-3", ... */
 shape_status shape_set_add_cloud(shape_set *set, const char *name, size_t *index, shape_error *error);
 /* Adds a placed copy that shares cloud `of`'s list and description. */
-shape_status shape_set_add_copy(shape_set *set, size_t of, const shape_frame *frame, size_t *index, shape_error *error);
+shape_status shape_set_add_copy(shape_set *set, size_t of, const shape_frame *frame, size_t *index,
+                                shape_error *error);
 /* Keeps a copy of an unknown chunk. */
-shape_status shape_set_add_extra(shape_set *set, const char type[4], uint32_t list, const void *bytes, size_t size,
-                                 shape_error *error);
+shape_status shape_set_add_extra(shape_set *set, const char type[4], uint32_t list, const void *bytes,
+                                 size_t size, shape_error *error);
 
 /* The list of a cloud. */
 shape_primitives *shape_set_list(shape_set *set, size_t cloud);
@@ -125,18 +185,30 @@ const shape_primitives *shape_set_list_const(const shape_set *set, size_t cloud)
 
 /* Append one primitive. The quaternion is normalised; sizes and finiteness are checked (SHAPE_ERROR_ARGUMENT). */
 shape_status shape_primitives_add_sphere(shape_primitives *list, shape_sphere sphere, shape_error *error);
-shape_status shape_primitives_add_ellipsoid(shape_primitives *list, shape_ellipsoid ellipsoid, shape_error *error);
+shape_status shape_primitives_add_ellipsoid(shape_primitives *list, shape_ellipsoid ellipsoid,
+                                            shape_error *error);
 /* Makes room for that many in all, so that appending up to them cannot fail. */
-shape_status shape_primitives_reserve(shape_primitives *list, size_t spheres, size_t ellipsoids, shape_error *error);
+shape_status shape_primitives_reserve(shape_primitives *list, size_t spheres, size_t ellipsoids,
+                                      shape_error *error);
 size_t shape_primitives_count(const shape_primitives *list);
 
 /* The box of one primitive, grown by the factor `grow` about its centre; exact for a rotated ellipsoid. */
 shape_box shape_sphere_box(const shape_sphere *sphere, float grow);
 shape_box shape_ellipsoid_box(const shape_ellipsoid *ellipsoid, float grow);
 
-/* The factor by which a primitive's support exceeds it: 1, or the square root of N for metaballs. */
+/* A primitive's support, the set outside which it makes no density for certain, is the primitive grown about its centre
+ * by a factor, then by a margin [m] all round.
+ * The factor: 1; the square root of N for metaballs; 1 + smoothness; for a layer 1, the square root of 2 (altitudes) or
+ * of 3 (box), which take in the bounds' corners. */
 float shape_cloud_support(const shape_cloud *cloud, const shape_primitives *list);
-/* The box around the supports of a cloud's primitives, in its own frame; empty for an empty cloud. */
+/* The margin: how far points are displaced, and how far a planet's curve drops below a primitive's rim; mostly 0. */
+float shape_cloud_margin(const shape_cloud *cloud, const shape_primitives *list);
+/* A primitive grown by factor and margin. Of an ellipsoid, the margin gives the smallest ellipsoid of its orientation
+ * that surely holds all points within it (the outer sum of Kurzhanski and Vályi 1997 for the traces' optimum). */
+shape_sphere shape_sphere_grow(const shape_sphere *sphere, float support, float margin);
+shape_ellipsoid shape_ellipsoid_grow(const shape_ellipsoid *ellipsoid, float support, float margin);
+/* The box outside which a cloud has no density, in its own frame: around the supports of its primitives, or, of a layer,
+ * around what they bound, grown by the margin; empty for an empty cloud. */
 shape_box shape_cloud_box(const shape_cloud *cloud, const shape_primitives *list);
 /* The same in world space, double precision; false for an empty cloud. */
 bool shape_set_cloud_bounds(const shape_set *set, size_t cloud, shape_dvec3 *min, shape_dvec3 *max);
@@ -145,7 +217,8 @@ bool shape_set_bounds(const shape_set *set, shape_dvec3 *min, shape_dvec3 *max);
 
 /* Sets field.noise_scale to a fifth of the median radius (of an ellipsoid: its mean semi-axis) where it is 0; to 0.2
  * where the list is empty. Programs call it when the list is complete. */
-shape_status shape_cloud_choose_noise_scale(shape_cloud *cloud, const shape_primitives *list, shape_error *error);
+shape_status shape_cloud_choose_noise_scale(shape_cloud *cloud, const shape_primitives *list,
+                                            shape_error *error);
 
 /* Checks the whole set as a reader of untrusted bytes must: lists in range, finite frames with an inverse, finite
  * primitives of positive size, unit quaternions to 1e-3, fields and media in range, names unique. */

@@ -30,7 +30,8 @@ typedef struct shape_error {
 
 /* Fills *error (which may be NULL) with a printf-formatted line, and returns status, so that a caller can write
  * `return shape_error_set(error, SHAPE_ERROR_FORMAT, "...", ...)`. Too long a text is cut. */
-shape_status shape_error_set(shape_error *error, shape_status status, const char *format, ...) SHAPE_PRINTF(3, 4);
+shape_status shape_error_set(shape_error *error, shape_status status, const char *format, ...)
+    SHAPE_PRINTF(3, 4);
 
 /* The usual line for a failed allocation. Returns SHAPE_ERROR_MEMORY. */
 shape_status shape_error_memory(shape_error *error);

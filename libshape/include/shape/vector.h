@@ -50,12 +50,18 @@ static inline shape_vec3 shape_vec3_scale(shape_vec3 a, float s)
 {
     return shape_vec3_make(a.x * s, a.y * s, a.z * s);
 }
-static inline float shape_vec3_dot(shape_vec3 a, shape_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline float shape_vec3_dot(shape_vec3 a, shape_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 static inline shape_vec3 shape_vec3_cross(shape_vec3 a, shape_vec3 b)
 {
     return shape_vec3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
-static inline float shape_vec3_length(shape_vec3 a) { return sqrtf(shape_vec3_dot(a, a)); }
+static inline float shape_vec3_length(shape_vec3 a)
+{
+    return sqrtf(shape_vec3_dot(a, a));
+}
 
 static inline shape_dvec3 shape_dvec3_make(double x, double y, double z)
 {
@@ -74,12 +80,18 @@ static inline shape_dvec3 shape_dvec3_scale(shape_dvec3 a, double s)
 {
     return shape_dvec3_make(a.x * s, a.y * s, a.z * s);
 }
-static inline double shape_dvec3_dot(shape_dvec3 a, shape_dvec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline double shape_dvec3_dot(shape_dvec3 a, shape_dvec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 static inline shape_dvec3 shape_dvec3_cross(shape_dvec3 a, shape_dvec3 b)
 {
     return shape_dvec3_make(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
-static inline double shape_dvec3_length(shape_dvec3 a) { return sqrt(shape_dvec3_dot(a, a)); }
+static inline double shape_dvec3_length(shape_dvec3 a)
+{
+    return sqrt(shape_dvec3_dot(a, a));
+}
 /* a / |a|; the zero vector stays zero. */
 shape_dvec3 shape_dvec3_normalize(shape_dvec3 a);
 

@@ -1,0 +1,314 @@
+/* The light pass over a grid (Jiménez 2018 section 3.5, first pass): the optical depth to the sun by no duplicate
+ * tracing, and the scattered light that the paper leaves out, by discrete ordinates. */
+#include "shape/lightgrid.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "light/ordinates.h"
+#include "shape/phase.h"
+
+shape_lightgrid_options shape_lightgrid_defaults(void)
+{
+    shape_lightgrid_options options = {.resolution = 48, .step = 0.5f, .scattering = true, .threads = 0};
+    return options;
+}
+
+void shape_delta_scaling(float g, float *share, float *rest)
+{
+    *share = g > 0 ? g * g : 0;
+    *rest = g > 0 ? g / (1 + g) : g;
+}
+
+/* A grid of nearly cubic cells (flat ones for a thin layer) around the cloud's box and a cell more on every side, so that
+ * its border is clear air. */
+static shape_status lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid,
+                            shape_error *error)
+{
+    shape_box box = cloud->box;
+    if (shape_box_is_empty(box))
+        box = (shape_box){{0, 0, 0}, {1, 1, 1}};
+    const int fewest = resolution / 4;
+    float *min = &box.min.x, *max = &box.max.x, longest = 0, reach = 1e-30f;
+    for (int axis = 0; axis < 3; axis++) {
+        longest = fmaxf(longest, max[axis] - min[axis]);
+        reach = fmaxf(reach, fmaxf(fabsf(min[axis]), fabsf(max[axis])));
+    }
+    /* Far from its frame's origin a cloud is no thicker than a float's step; a cell must be. */
+    float cell = fmaxf(longest / (float)(resolution > 3 ? resolution - 2 : 1), reach * 1e-6f);
+    for (int axis = 0; axis < 3; axis++) {
+        int inner = (int)ceilf((max[axis] - min[axis]) / cell * 0.9999f);
+        float edge = cell;
+        if (cloud->field.model == SHAPE_MODEL_LAYER && inner < fewest) {
+            /* A layer is far wider than it is thick, and its light changes over its thickness. */
+            inner = fewest;
+            edge = fmaxf((max[axis] - min[axis]) / (float)fewest, reach * 1e-6f);
+        }
+        grid->size[axis] = (inner < 1 ? 1 : inner) + 2;
+        float middle = 0.5f * min[axis] + 0.5f * max[axis], half = 0.5f * edge * (float)grid->size[axis];
+        min[axis] = middle - half;
+        max[axis] = middle + half;
+    }
+    grid->box = box;
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
+    return grid->cells ? SHAPE_OK : shape_error_memory(error);
+}
+
+static shape_vec3 cell_point(const shape_lightgrid *grid, int x, int y, int z, float fx, float fy, float fz)
+{
+    shape_vec3 size = shape_vec3_sub(grid->box.max, grid->box.min);
+    return shape_vec3_make(grid->box.min.x + size.x * ((float)x + fx) / (float)grid->size[0],
+                           grid->box.min.y + size.y * ((float)y + fy) / (float)grid->size[1],
+                           grid->box.min.z + size.z * ((float)z + fz) / (float)grid->size[2]);
+}
+
+/* The step of the march to the sun: set by the finest noise of any cloud. */
+static float choose_step(const shape_volume *volume, float share)
+{
+    /* A stranger's file may name a noise of a nanometre: no cloud needs more than a few thousand steps across. */
+    const double most_steps = 4096;
+    double least = INFINITY, extent = 0;
+    for (size_t i = 0; i < volume->cloud_count; i++) {
+        const shape_volume_cloud *cloud = &volume->clouds[i];
+        double scale = cbrt(fabs(shape_frame_determinant(&cloud->frame)));
+        double across = (double)shape_vec3_length(shape_vec3_sub(cloud->box.max, cloud->box.min));
+        least = fmin(least, scale / (double)cloud->inverse_noise_scale);
+        if (!shape_box_is_empty(cloud->box))
+            extent = fmax(extent, scale * across);
+    }
+    return (float)fmax(least * (double)share, extent / most_steps);
+}
+
+typedef struct sun_pass {
+    const shape_volume *volume;
+    const shape_volume_cloud *cloud;
+    shape_dvec3 sun;
+    float step;
+} sun_pass;
+
+static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y, int z,
+                              shape_candidates *scratch, shape_error *error)
+{
+    float *row = grid->cells + ((size_t)z * (size_t)grid->size[1] + (size_t)y) * (size_t)grid->size[0] *
+                                   SHAPE_LIGHTGRID_VALUES;
+    for (int x = 0; x < grid->size[0]; x++) {
+        shape_vec3 p = cell_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
+        shape_dvec3 world = shape_frame_point(&pass->cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
+        double depth;
+        shape_status status = shape_volume_optical_depth(pass->volume, world, pass->sun, 0, 1e30f, pass->step,
+                                                         scratch, &depth, error);
+        if (status)
+            return status;
+        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, 60000); /* a half-float's range */
+    }
+    return SHAPE_OK;
+}
+
+static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightgrid *grid, shape_error *error)
+{
+    int rows = grid->size[1] * grid->size[2];
+    shape_status status = SHAPE_OK;
+#pragma omp parallel num_threads(threads)
+    {
+        shape_candidates scratch = {0};
+        shape_error own = {0};
+#pragma omp for schedule(dynamic, 4)
+        for (int i = 0; i < rows; i++) {
+            if (!own.status)
+                march_row(pass, grid, i % grid->size[1], i / grid->size[1], &scratch, &own);
+        }
+        if (own.status) {
+#pragma omp critical
+            {
+                status = own.status;
+                if (error)
+                    *error = own;
+            }
+        }
+        shape_candidates_free(&scratch);
+    }
+    return status;
+}
+
+/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
+static void fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
+                            float *extinction)
+{
+    int rows = grid->size[1] * grid->size[2];
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
+    for (int i = 0; i < rows; i++)
+        for (int x = 0; x < grid->size[0]; x++) {
+            float sum = 0;
+            for (int corner = 0; corner < 8; corner++)
+                sum += shape_cloud_density(cloud,
+                                           cell_point(grid, x, i % grid->size[1], i / grid->size[1],
+                                                      corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f,
+                                                      corner & 4 ? 0.75f : 0.25f));
+            extinction[(size_t)i * (size_t)grid->size[0] + (size_t)x] = sum / 8 * cloud->medium.extinction;
+        }
+}
+
+/* A grid of half as many cells a side: means of extinction and beam. */
+static void coarsen(const int size[3], const float *fine, const int coarse_size[3], float *coarse)
+{
+    for (int z = 0; z < coarse_size[2]; z++)
+        for (int y = 0; y < coarse_size[1]; y++)
+            for (int x = 0; x < coarse_size[0]; x++) {
+                float sum = 0;
+                int count = 0;
+                for (int corner = 0; corner < 8; corner++) {
+                    int a = 2 * x + (corner & 1), b = 2 * y + (corner >> 1 & 1), c = 2 * z + (corner >> 2);
+                    if (a < size[0] && b < size[1] && c < size[2]) {
+                        sum += fine[((size_t)c * (size_t)size[1] + (size_t)b) * (size_t)size[0] + (size_t)a];
+                        count++;
+                    }
+                }
+                coarse[((size_t)z * (size_t)coarse_size[1] + (size_t)y) * (size_t)coarse_size[0] +
+                       (size_t)x] = sum / (float)count;
+            }
+}
+
+static void refine(const int coarse_size[3], const float *coarse, const int size[3], float *fine)
+{
+    for (int z = 0; z < size[2]; z++)
+        for (int y = 0; y < size[1]; y++)
+            for (int x = 0; x < size[0]; x++) {
+                size_t from =
+                    ((size_t)(z / 2) * (size_t)coarse_size[1] + (size_t)(y / 2)) * (size_t)coarse_size[0] +
+                    (size_t)(x / 2);
+                size_t to = ((size_t)z * (size_t)size[1] + (size_t)y) * (size_t)size[0] + (size_t)x;
+                memcpy(fine + to * ORDINATES_CELL, coarse + from * ORDINATES_CELL,
+                       ORDINATES_CELL * sizeof *fine);
+            }
+}
+
+/* Solves on a grid of half the size first, down to a few cells, and takes that as the first guess: light travels across
+ * the coarse grid in few rounds. */
+static shape_status solve_levels(ordinates_problem *p, int threads, shape_error *error)
+{
+    enum { SMALL = 8, ROUNDS = 8, FIRST_ROUNDS = 24 };
+    int longest = p->size[0] > p->size[1] ? p->size[0] : p->size[1];
+    longest = longest > p->size[2] ? longest : p->size[2];
+    if (longest <= SMALL)
+        return ordinates_solve(p, FIRST_ROUNDS, threads, error);
+    ordinates_problem half = *p;
+    for (int axis = 0; axis < 3; axis++) {
+        half.size[axis] = (p->size[axis] + 1) / 2;
+        half.cell[axis] = 2 * p->cell[axis];
+    }
+    size_t cells = (size_t)half.size[0] * (size_t)half.size[1] * (size_t)half.size[2];
+    float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
+    half.moments = calloc(cells * ORDINATES_CELL, sizeof *half.moments);
+    shape_status status = SHAPE_OK;
+    if (!extinction || !beam || !half.moments)
+        status = shape_error_memory(error);
+    if (!status) {
+        coarsen(p->size, p->extinction, half.size, extinction);
+        coarsen(p->size, p->beam, half.size, beam);
+        half.extinction = extinction;
+        half.beam = beam;
+        status = solve_levels(&half, threads, error);
+    }
+    if (!status) {
+        refine(half.size, half.moments, p->size, p->moments);
+        status = ordinates_solve(p, ROUNDS, threads, error);
+    }
+    free(extinction);
+    free(beam);
+    free(half.moments);
+    return status;
+}
+
+static shape_vec3 to_cloud(const shape_volume_cloud *cloud, shape_dvec3 world)
+{
+    shape_dvec3 d = shape_dvec3_normalize(shape_frame_direction(&cloud->inverse, world));
+    return shape_vec3_make((float)d.x, (float)d.y, (float)d.z);
+}
+
+static void store(const ordinates_problem *p, size_t cells, shape_lightgrid *grid)
+{
+    for (size_t i = 0; i < cells; i++) {
+        const float *m = p->moments + i * ORDINATES_CELL;
+        float *out = grid->cells + i * SHAPE_LIGHTGRID_VALUES;
+        out[1] = m[0], out[2] = m[1], out[3] = m[2];
+        out[4] = m[ORDINATES_LANES], out[5] = m[2 * ORDINATES_LANES], out[6] = m[3 * ORDINATES_LANES];
+        out[7] = m[ORDINATES_LANES + 1] * p->up.x + m[2 * ORDINATES_LANES + 1] * p->up.y +
+                 m[3 * ORDINATES_LANES + 1] * p->up.z;
+    }
+}
+
+static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int threads,
+                            shape_lightgrid *grid, shape_error *error)
+{
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
+    float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments);
+    shape_status status = extinction && beam && moments ? SHAPE_OK : shape_error_memory(error);
+    if (!status) {
+        float share, rest, albedo = cloud->medium.albedo;
+        shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &share, &rest);
+        float thin = 1 - albedo * share;
+        fill_extinction(cloud, grid, threads, extinction);
+        for (size_t i = 0; i < cells; i++) {
+            extinction[i] *= thin;
+            beam[i] = expf(-thin * grid->cells[i * SHAPE_LIGHTGRID_VALUES]);
+        }
+        ordinates_problem p = {.extinction = extinction,
+                               .beam = beam,
+                               .albedo = thin > 0 ? albedo * (1 - share) / thin : 0,
+                               .g = rest,
+                               .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
+                               .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
+                               .moments = moments};
+        for (int axis = 0; axis < 3; axis++) {
+            p.size[axis] = grid->size[axis];
+            double column = sqrt(cloud->frame.m[0][axis] * cloud->frame.m[0][axis] +
+                                 cloud->frame.m[1][axis] * cloud->frame.m[1][axis] +
+                                 cloud->frame.m[2][axis] * cloud->frame.m[2][axis]);
+            p.cell[axis] = (float)column * ((&grid->box.max.x)[axis] - (&grid->box.min.x)[axis]) /
+                           (float)grid->size[axis];
+        }
+        status = solve_levels(&p, threads, error);
+        if (!status)
+            store(&p, cells, grid);
+    }
+    free(extinction);
+    free(beam);
+    free(moments);
+    return status;
+}
+
+shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
+                                   const shape_lightgrid_options *options, shape_lightgrid *grid,
+                                   shape_error *error)
+{
+    if (cloud >= volume->cloud_count)
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "there is no cloud number %zu", cloud);
+    if (options->resolution < 2 || options->resolution > 256)
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "a light grid of %d cells (it must be 2 to 256)",
+                               options->resolution);
+    if (!(options->step > 0))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                               "the light grid's step is %g (it must be above 0)", (double)options->step);
+    memset(grid, 0, sizeof *grid);
+    int threads = options->threads > 0 ? options->threads : omp_get_max_threads();
+    const shape_volume_cloud *c = &volume->clouds[cloud];
+    shape_status status = lay_out(c, options->resolution, grid, error);
+    sun_pass pass = {volume, c, light->sun, choose_step(volume, options->step)};
+    if (!status)
+        status = march_to_sun(&pass, threads, grid, error);
+    if (!status && options->scattering)
+        status = scatter(c, light, threads, grid, error);
+    if (status)
+        shape_lightgrid_free(grid);
+    return status;
+}
+
+void shape_lightgrid_free(shape_lightgrid *grid)
+{
+    free(grid->cells);
+    memset(grid, 0, sizeof *grid);
+}

@@ -1,0 +1,28 @@
+/* Private: scattered light on a grid by discrete ordinates. */
+#ifndef SHAPE_LIGHT_ORDINATES_H
+#define SHAPE_LIGHT_ORDINATES_H
+
+#include "shape/status.h"
+#include "shape/vector.h"
+
+/* Three problems are solved at once: light from the sun's first collisions, from the upper and from the lower half of
+ * the sky. A cell holds four moments (mean radiance, and the mean of radiance times x, y, z of the direction of
+ * travel) of each; the fourth lane is unused and keeps the loops of a whole vector. */
+enum { ORDINATES_LANES = 4, ORDINATES_MOMENTS = 4, ORDINATES_CELL = ORDINATES_LANES * ORDINATES_MOMENTS };
+
+typedef struct ordinates_problem {
+    int size[3];
+    float cell[3];           /* edges of a cell [m of the world] */
+    const float *extinction; /* a cell's mean, after the delta scaling [1/m] */
+    const float *beam;       /* a cell's unscattered irradiance from the sun, for one of 1 */
+    float albedo, g;         /* after the delta scaling */
+    shape_vec3 sun_travel;   /* unit direction in which sun light travels, grid's frame */
+    shape_vec3 up;           /* the world's up, grid's frame, unit */
+    float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
+} ordinates_problem;
+
+/* Source iteration, `iterations` times. The result does not depend on the number of threads. */
+shape_status ordinates_solve(const ordinates_problem *problem, int iterations, int threads,
+                             shape_error *error);
+
+#endif

@@ -1,0 +1,44 @@
+/* Private: rays through the majorant grid: free paths and transmittances. */
+#ifndef SHAPE_LIGHT_TRACK_H
+#define SHAPE_LIGHT_TRACK_H
+
+#include "light/majorant.h"
+#include "shape/random.h"
+
+struct shape_tracer {
+    majorant_grid grid;
+};
+
+/* A uniform number above 0 and below 1. */
+static inline double track_unit(shape_random *random)
+{
+    return ((double)shape_random_u32(random) + 0.5) * 0x1p-32;
+}
+
+/* Unlike fmin and fmax no calls: nothing here is NaN. */
+static inline double track_min(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double track_max(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* Draws where a ray from p (metres from the grid's origin) along the unit vector d collides. depth is the optical depth,
+ * drawn by the caller as -log of a uniform number, after which the first tentative collision comes. True: p has moved
+ * there and *cloud scatters; false: the ray leaves the grid. */
+bool track_collide(const majorant_grid *grid, double p[3], const double d[3], double depth,
+                   shape_random *random, uint32_t *cloud);
+
+/* Whether something collides with a ray from p along d before length: false with the chance of the transmittance. Cheaper
+ * than an estimate of it, as it ends at the first collision and seldom needs a density in full. */
+bool track_blocked(const majorant_grid *grid, const double p[3], const double d[3], double length,
+                   shape_random *random);
+
+/* An unbiased estimate of the transmittance from p along d as far as length. */
+double track_transmittance(const majorant_grid *grid, const double p[3], const double d[3], double length,
+                           shape_random *random);
+
+#endif

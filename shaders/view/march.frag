@@ -1,0 +1,187 @@
+// The view pass: the joined intervals of the supports, marched once, with the analytic field and exponential segments.
+#include "field/cloud.glsl"
+#include "field/noise.glsl"
+#include "field/density.glsl"
+#include "field/interval.glsl"
+#include "light/phase.glsl"
+#include "light/sky.glsl"
+#include "light/lightgrid.glsl"
+#include "view/camera.glsl"
+
+uniform float step_scale;     // steps, in cells of the noise's first octave
+uniform float step_growth;    // steps grow with distance: metres a metre, about a pixel
+uniform float transmittance_end;
+
+layout(location = 0) out vec4 radiance_out; // radiance, coverage
+layout(location = 1) out vec4 work_out;     // steps, fetches, where to go on or -1
+
+uniform float window_length; // of a scene with very many primitives [m]; else 1e30
+uniform int resume; // go on where the picture of the last part stopped
+uniform highp sampler2D part_radiance, part_work;
+
+float transmittance = 1.0;
+vec3 radiance = vec3(0.0);
+vec3 ray;
+float random_start;
+float reached; // all before it is done
+
+float step_length(float t)
+{
+    return max(step_scale * cloud_step, step_growth * t);
+}
+
+void add_segment(float extinction, vec3 source, float width)
+{
+    float passed = exp(-extinction * width);
+    radiance += transmittance * (1.0 - passed) * source;
+    transmittance *= passed;
+}
+
+int work_end; // where this part stops
+
+bool going_on() { return transmittance > transmittance_end && (work < work_end || work_end == 0); }
+
+// One cloud alone over [reached, t1], by far the usual case.
+void march_one(int first, int end, float t1)
+{
+    float c = candidate[first].w;
+    load_cloud(int(c), ray);
+    while (reached < t1 && going_on()) {
+        float width = min(step_length(reached), t1 - reached), s = reached + width * random_start;
+        vec3 p = cloud_origin + s * cloud_direction;
+        for (; first < end - 1 && candidate[first].y < reached; first++)
+            work++;
+        float density = density_at(p, candidates_u2(first, end, c, s));
+        steps += 1.0;
+        fetches += float(cloud_octaves);
+        work += cloud_octaves + 2;
+        if (density > 0.0)
+            add_segment(density * cloud_extinction, scattered_light(p, ray), width);
+        reached = width < t1 - reached ? reached + width : t1;
+    }
+}
+
+// Extinction and source of all clouds at s; c walks over the clouds in the list in rising order.
+void mixed_at(int first, int end, float s, bool crowded, out float extinction, out vec3 source)
+{
+    extinction = 0.0;
+    source = vec3(0.0);
+    for (float last = -1.0;;) {
+        float c = 1e9;
+        if (crowded)
+            c = last + 1.0 < float(cloud_count) ? last + 1.0 : 1e9;
+        for (int i = first; i < end && !crowded; i++, work++)
+            if (candidate[i].w > last)
+                c = min(c, candidate[i].w);
+        if (c == 1e9)
+            break;
+        load_cloud(int(c), ray);
+        vec3 p = cloud_origin + s * cloud_direction;
+        float density = density_at(p, crowded ? cloud_u2(p, work) : candidates_u2(first, end, c, s));
+        fetches += float(cloud_octaves);
+        work += cloud_octaves + 2;
+        if (density > 0.0) {
+            extinction += density * cloud_extinction;
+            source += density * cloud_extinction * scattered_light(p, ray);
+        }
+        last = c;
+    }
+    if (extinction > 0.0)
+        source /= extinction;
+}
+
+void march_mixed(int first, int end, float t1, bool crowded)
+{
+    load_cloud(int(candidate[first].w), ray);
+    while (reached < t1 && going_on()) {
+        float width = min(step_length(reached), t1 - reached), extinction;
+        vec3 source;
+        mixed_at(first, end, reached + width * random_start, crowded, extinction, source);
+        steps += 1.0;
+        add_segment(extinction, source, width);
+        reached = width < t1 - reached ? reached + width : t1;
+    }
+}
+
+// Joins the window's candidates into intervals and marches each.
+void march_window()
+{
+    for (int next = 0; next < candidate_count && going_on();) {
+        int first = next;
+        bool alone = true;
+        float end = candidate[first].y;
+        for (next++; next < candidate_count && candidate[next].x <= end; next++, work++) {
+            end = max(end, candidate[next].y);
+            alone = alone && candidate[next].w == candidate[first].w;
+        }
+        reached = max(candidate[first].x, reached);
+        if (alone)
+            march_one(first, next, min(end, window_end));
+        else
+            march_mixed(first, next, min(end, window_end), false);
+    }
+    if (going_on())
+        reached = window_end;
+}
+
+// More supports hold this point than the list has room for: by the tree, to where the last of the known ones ends. Up to
+// there the interval is joined, whatever else it holds.
+void march_crowd()
+{
+    float until = reached + 1e-5 * abs(reached) + 1e-6;
+    for (int i = 0; i < candidate_count; i++)
+        until = max(until, candidate[i].y);
+    march_mixed(0, candidate_count, until, true);
+}
+
+void main()
+{
+    const float FAR = 1e30;
+    ray = camera_ray();
+    random_start = pixel_random();
+    fetches = steps = reached = 0.0;
+    work = 0;
+    work_end = 0; // not known before the first look
+    if (resume == 1) {
+        vec4 last = texelFetch(part_work, ivec2(gl_FragCoord.xy), 0);
+        vec4 light = texelFetch(part_radiance, ivec2(gl_FragCoord.xy), 0);
+        radiance_out = light;
+        work_out = last;
+        if (last.z < 0.0)
+            return;
+        radiance = light.rgb;
+        transmittance = light.a;
+        steps = last.x;
+        fetches = last.y;
+        reached = last.z;
+    }
+    while (reached < FAR && going_on()) {
+        float until = FAR;
+        if (window_length < FAR) {
+            reached = nearest_entry(ray, reached, FAR);
+            until = reached < FAR ? reached + window_length : FAR;
+        }
+        gather(ray, reached, until);
+        work++;
+        if (work_end == 0)
+            work_end = work + WORK_LIMIT; // so that each part gets on
+        if (candidate_count == 0)
+            reached = until;
+        else if (window_end <= reached)
+            march_crowd();
+        else
+            march_window();
+    }
+    if (reached < FAR && transmittance > transmittance_end) {
+        radiance_out = vec4(radiance, transmittance);
+        work_out = vec4(steps, fetches, reached, 0.0);
+        return;
+    }
+    if (transmittance <= transmittance_end) {
+        // What is cut off is shared out over what was seen, so that nothing shines through.
+        radiance /= 1.0 - transmittance;
+        transmittance = 0.0;
+    }
+    radiance_out = vec4(radiance + transmittance * sky_radiance(ray), 1.0 - transmittance);
+    work_out = vec4(steps, fetches, -1.0, 0.0);
+}

@@ -1,0 +1,86 @@
+# neph-render: pictures in three formats, the same for the same seed, statistics, comparison, wrong commands.
+set -eu
+bin=$1
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir"
+
+fail() {
+    echo "cli_render: $1" >&2
+    exit 1
+}
+# wrong TEXT COMMAND...: exits 2 with one line that holds TEXT.
+wrong() {
+    text=$1
+    shift
+    code=0
+    "$@" >out 2>err || code=$?
+    [ "$code" -eq 2 ] || fail "$* ended with $code, not 2"
+    [ "$(wc -l <err)" -eq 1 ] || fail "$* gave more than one line"
+    grep -q -e "$text" err || fail "$*: \"$(cat err)\" does not say \"$text\""
+}
+
+"$bin/neph-gauss" -q --count 6 --extinction 8 -o c.neph
+small="--size 32x18 --spp 8"
+"$bin/neph-render" -q c.neph $small -o a.exr --stats >stats.json || fail "rendering to EXR failed"
+grep -q '"method": "reference"' stats.json || fail "--stats gives no method"
+grep -q '"spp": 8' stats.json || fail "--stats gives no spp"
+grep -q '"rel_error": [0-9]' stats.json || fail "--stats gives no rel_error"
+OMP_NUM_THREADS=1 "$bin/neph-render" -q c.neph $small -o b.exr
+cmp -s a.exr b.exr || fail "one thread makes another picture than many"
+"$bin/neph-render" -q c.neph $small --seed 2 -o other.exr
+cmp -s a.exr other.exr && fail "another seed makes the same picture"
+"$bin/neph-render" -q - $small <c.neph >c.png || fail "rendering from and to a pipe failed"
+[ "$(head -c 4 c.png | tail -c 3)" = PNG ] || fail "standard output got no PNG"
+"$bin/neph-render" -q c.neph $small -o c.pfm
+[ "$(head -c 2 c.pfm)" = PF ] || fail "c.pfm is no PFM"
+
+# The same radiance in both formats; another seed differs by noise, another sun by more.
+"$bin/neph-render" --compare a.exr c.pfm --tolerance 0 >same.json || fail "EXR and PFM differ"
+grep -q '"relmse": 0' same.json || fail "equal pictures have an error"
+"$bin/neph-render" --compare a.exr other.exr --tolerance 1e-9 -o heat.png >/dev/null 2>err && fail "--tolerance does not bite"
+grep -q tolerance err || fail "--tolerance says nothing"
+[ -s heat.png ] || fail "no heat map"
+"$bin/neph-render" -q c.neph $small --sky none --sun-irradiance 0,0,0 -o dark.pfm
+"$bin/neph-render" -q c.neph $small --sky 1,1,1 --sun-irradiance 0,0,0 -o white.pfm --stats >white.json
+sed -n '/"mean"/,/]/p' white.json | grep -q '^ *1.0' || fail "a white furnace is not white"
+"$bin/neph-render" --compare dark.pfm white.pfm >dark.json
+grep -q '"rmse": 1.0' dark.json || fail "darkness and a white furnace are not 1 apart"
+# --noise stops early, and goes on when it is asked for less.
+"$bin/neph-render" -q c.neph --size 16x9 --spp 4096 --noise 0.3 -o n.exr --stats >rough.json
+"$bin/neph-render" -q c.neph --size 16x9 --spp 4096 --error 0.05 -o n.exr --stats >fine.json
+spp() { sed -n 's/.*"spp": \([0-9]*\).*/\1/p' "$1"; }
+[ "$(spp rough.json)" -lt "$(spp fine.json)" ] || fail "less noise does not take more paths"
+
+wrong "expected none, clear" "$bin/neph-render" c.neph -o a.png --sky blue
+wrong "height" "$bin/neph-render" c.neph -o a.png --sun 0,91
+wrong "same point" "$bin/neph-render" c.neph -o a.png --eye 1,1,1 --target 1,1,1
+wrong "suffix\|\.png" "$bin/neph-render" c.neph -o a.jpg
+wrong "WIDTHxHEIGHT" "$bin/neph-render" c.neph -o a.png --size 12
+wrong "name the picture" "$bin/neph-render" c.neph --stats
+wrong "two pictures" "$bin/neph-render" --compare a.exr
+wrong "belongs to --compare" "$bin/neph-render" c.neph -o a.png --tolerance 1
+code=0
+"$bin/neph-render" c.png -o a.png 2>err || code=$?
+[ "$code" -eq 1 ] || fail "a PNG as input ended with $code, not 1"
+
+# Marching: every rule and light, the same for any number of threads; options of the other method are refused.
+for rule in riemann-left riemann-right trapezoid simpson simpson38 exponential; do
+    "$bin/neph-render" -q c.neph --size 32x18 --method march --rule $rule --steps 300 --light single -o $rule.exr ||
+        fail "--rule $rule failed"
+done
+for rule in riemann-left riemann-right trapezoid simpson simpson38; do
+    "$bin/neph-render" --compare $rule.exr exponential.exr --tolerance 0.003 >/dev/null || fail "--rule $rule is far off"
+    cmp -s $rule.exr exponential.exr && fail "--rule $rule makes the exponential rule's very picture"
+done
+for light in powder octaves grid; do
+    "$bin/neph-render" -q c.neph --size 32x18 --method march --light $light -o $light.exr || fail "--light $light failed"
+    OMP_NUM_THREADS=1 "$bin/neph-render" -q c.neph --size 32x18 --method march --light $light -o one.exr
+    cmp -s $light.exr one.exr || fail "--light $light: one thread makes another picture than many"
+done
+# The light grid has all scatterings; the reference's mean, at 64 paths a pixel, is within a tenth.
+"$bin/neph-render" -q c.neph --size 32x18 --spp 64 -o truth.exr
+"$bin/neph-render" --compare grid.exr truth.exr --tolerance 0.1 >/dev/null || fail "--light grid is far from the reference"
+wrong "belong to --method march" "$bin/neph-render" c.neph -o a.png --steps 10
+wrong "belong to --method reference" "$bin/neph-render" c.neph -o a.png --method march --noise 0.1
+wrong "goes with --rule exponential" "$bin/neph-render" c.neph -o a.png --method march --rule simpson --jitter

@@ -1,0 +1,25 @@
+/* The picture options of every program that makes one: size, view, sun, sky, exposure. */
+#ifndef NEPHELE_CLI_PICTURE_H
+#define NEPHELE_CLI_PICTURE_H
+
+#include "cli.h"
+#include "shape/view.h"
+
+typedef struct cli_picture {
+    int64_t size[2];
+    double eye[3], target[3], fov, sun[2], sun_irradiance[3], exposure;
+    const char *sky;
+    bool size_given, eye_given, target_given, fov_given, sun_given, sun_irradiance_given, sky_given,
+        exposure_given;
+} cli_picture;
+
+extern cli_picture cli_picture_values;
+/* The rows that fill cli_picture_values; put them into a group titled "Picture". */
+extern const cli_option cli_picture_options[];
+
+/* Fills view and light from the defaults and the command line. Without --eye the view frames the set (a --target then
+ * turns the framed view there); with --eye and without --target it looks at the set's middle. A sky
+ * that is no sky, or an eye on its target, ends the program with exit 2. */
+void cli_picture_apply(const shape_set *set, shape_view *view, shape_light *light);
+
+#endif

@@ -1,0 +1,75 @@
+/* shape_gl: draws a volume with OpenGL 3.3, in a window of the caller's or without one. All functions need the context
+ * that the renderer was made in to be current, and are not thread-safe. */
+#ifndef SHAPE_GL_H
+#define SHAPE_GL_H
+
+#include <stdbool.h>
+
+#include "shape/lightgrid.h"
+#include "shape/view.h"
+#include "shape/volume.h"
+
+/* --- context.c: OpenGL without a window (EGL surfaceless; Mesa's llvmpipe where there is no GPU) --- */
+
+typedef struct shape_gl_context shape_gl_context;
+
+/* Makes a context and makes it current. SHAPE_ERROR_SYSTEM says what is missing. */
+shape_status shape_gl_context_create(shape_gl_context **context, shape_error *error);
+void shape_gl_context_destroy(shape_gl_context *context); /* NULL is allowed */
+
+/* --- passes.c: the renderer --- */
+
+typedef enum shape_gl_method {
+    SHAPE_GL_DEFAULT,  /* the preview */
+    SHAPE_GL_EXACT,    /* the analytic field, small steps */
+    SHAPE_GL_PAPER,    /* Jiménez 2018 Algorithm 1, as printed */
+    SHAPE_GL_PAPER_NDT /* the same with Algorithm 2's sweep in the view */
+} shape_gl_method;
+
+typedef struct shape_gl_options {
+    shape_gl_method method;
+    const char *shader_folder; /* read shaders from here instead of the built-in ones; NULL */
+    shape_lightgrid_options light;
+    size_t bake_voxels; /* of all clouds' baked grids together, at most */
+    bool paper_lod;     /* the paper's printed distance formula for its step, rather than 0.1 */
+} shape_gl_options;
+
+shape_gl_options shape_gl_defaults(void);
+
+typedef struct shape_gl_renderer shape_gl_renderer;
+
+/* What the work cost. Times in milliseconds, of the last call of each kind. */
+typedef struct shape_gl_costs {
+    double upload_ms, light_ms, bake_ms;
+    double steps_per_pixel, fetches_per_pixel; /* of the last picture read by shape_gl_read */
+} shape_gl_costs;
+
+/* Compiles the shaders. The caller destroys it. */
+shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer **renderer,
+                             shape_error *error);
+void shape_gl_destroy(shape_gl_renderer *renderer); /* NULL is allowed */
+
+/* Uploads a volume; it must live until the next load or the end. */
+shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error);
+/* The light pass, on the CPU, and its upload. Needed after shape_gl_load and whenever the sun's direction changes;
+ * colours may change without it. */
+shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error);
+
+/* Draws sample number `sample` of a picture into the renderer's buffer: sample 0 begins a new picture, each further one
+ * refines it (other starts of the rays, other places within the pixels). Returns without waiting for the GPU. */
+shape_status shape_gl_draw(shape_gl_renderer *renderer, const shape_view *view, int sample,
+                           shape_error *error);
+/* Waits until all that was drawn is done. */
+void shape_gl_finish(void);
+/* Reads the picture: linear radiance, rows from the top, width * height * 4 floats into the caller's buffer (red,
+ * green, blue, coverage). Fills the costs. */
+shape_status shape_gl_read(shape_gl_renderer *renderer, float *rgba, shape_error *error);
+/* Shows the picture in the current framebuffer (a window of the view's size), tone-mapped. */
+void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width, int height);
+shape_gl_costs shape_gl_get_costs(const shape_gl_renderer *renderer);
+
+/* For the tests: density (red), u^2 (green) and noise (blue) at `count` points of cloud 0, by the shaders. */
+shape_status shape_gl_densities(shape_gl_renderer *renderer, const shape_vec3 *points, int count, float *rgba,
+                                shape_error *error);
+
+#endif

@@ -1,0 +1,31 @@
+/* Float textures to draw into. */
+#include <string.h>
+
+#include "gl_private.h"
+
+void gl_target_free(gl_target *target)
+{
+    glDeleteTextures(2, target->textures);
+    glDeleteFramebuffers(1, &target->framebuffer);
+    memset(target, 0, sizeof *target);
+}
+
+shape_status gl_target_make(gl_target *target, int width, int height, shape_error *error)
+{
+    static const GLenum buffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    gl_target_free(target);
+    glGenFramebuffers(1, &target->framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+    glGenTextures(2, target->textures);
+    for (int i = 0; i < 2; i++) {
+        glBindTexture(GL_TEXTURE_2D, target->textures[i]);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, NULL);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target->textures[i], 0);
+    }
+    glDrawBuffers(2, buffers);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "this GPU cannot draw into 32-bit float textures");
+    return SHAPE_OK;
+}
