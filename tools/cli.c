@@ -17,7 +17,7 @@
 #include "cli_private.h"
 #include "shape/neph.h"
 
-enum { MAX_OPTIONS = 160, MAX_SET_FILE = 0x40000000 };
+enum { MAX_OPTIONS = 160 };
 
 /* One process, one command line: what cli_error, cli_say and cli_made_by need later. */
 static const char *program_name = "neph";
@@ -408,43 +408,6 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         cli_wrong("%s is missing (see --help)", program->arguments);
     if (common->argument_count > program->max_arguments)
         cli_wrong("\"%s\" is one argument too many (see --help)", common->arguments[program->max_arguments]);
-}
-
-void cli_write(const cli_common *common, const void *bytes, size_t size, bool binary)
-{
-    shape_error error;
-    if (strcmp(common->output, "-")) {
-        cli_check(shape_file_write(common->output, bytes, size, &error), &error);
-        return;
-    }
-    if (binary && isatty(STDOUT_FILENO))
-        cli_fail("will not write binary to a terminal (name a file with -o, or use a pipe)");
-    if (fwrite(bytes, 1, size, stdout) != size || fflush(stdout))
-        cli_fail("standard output: cannot write: %s", strerror(errno));
-}
-
-void cli_write_set(const cli_common *common, const shape_set *set)
-{
-    shape_error error;
-    unsigned char *bytes;
-    size_t size;
-    cli_check(shape_neph_encode(set, &bytes, &size, &error), &error);
-    cli_write(common, bytes, size, true);
-    free(bytes);
-}
-
-shape_set *cli_read_set(const char *path)
-{
-    shape_error error;
-    unsigned char *bytes;
-    size_t size;
-    shape_set *set;
-    cli_check(shape_file_read(path, MAX_SET_FILE, &bytes, &size, &error), &error);
-    if (shape_neph_decode(bytes, size, &set, &error))
-        cli_fail("%s: %s", strcmp(path, "-") ? path : "standard input", error.text);
-    cli_note_input(path, bytes, size);
-    free(bytes);
-    return set;
 }
 
 void cli_made_by(char made_by[SHAPE_MADE_BY_MAX + 1])

@@ -91,7 +91,7 @@ static const cli_program program = {
              "metre of the world: a cloud twice as large is twice as deep, unless --keep-depth is given.",
     .examples = "  neph-edit a.neph b.neph -o both.neph\n"
                 "  neph-gauss | neph-edit - --scale 2,1,1 --rotate 0,30,0 -o long.neph\n"
-                "  neph-edit cumulus.neph --grow --clip --prune -o detailed.neph\n",
+                "  neph-edit cumulus.neph --grow --clip --clip-height -1.5 -o detailed.neph\n",
     .min_arguments = 1,
     .max_arguments = 10000,
     .groups = groups};

@@ -35,7 +35,7 @@ typedef struct shape_primitives {
     size_t sphere_capacity, ellipsoid_capacity;
 } shape_primitives;
 
-/* How primitives become density; see docs/method.md. The numbers are those of the file format. */
+/* How primitives become density; see docs/fields.md. The numbers are those of the file format. */
 typedef enum shape_model {
     SHAPE_MODEL_UNIFORM = 0,  /* 1 inside a primitive */
     SHAPE_MODEL_SPHEROID = 1, /* Jiménez 2018 Eq. 1, 2, Algorithm 1 */
