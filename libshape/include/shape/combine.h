@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 /* Adds another set's clouds, lists and unknown chunks behind those of `set`; what was shared in it stays shared. A
- * cloud whose name is taken gets a number behind it. `other` is not changed. Errors: memory; the set is then to be
+ * cloud whose name is taken gets a number behind it. `other`, which is another set than `set`, is not changed. Errors: memory; the set is then to be
  * destroyed. */
 shape_status shape_set_append(shape_set *set, const shape_set *other, shape_error *error);
 
