@@ -189,11 +189,12 @@ static void refine(const int coarse_size[3], const float *coarse, const int size
  * the coarse grid in few rounds. */
 static shape_status solve_levels(ordinates_problem *p, int threads, shape_error *error)
 {
-    enum { SMALL = 8, ROUNDS = 8, FIRST_ROUNDS = 24 };
+    enum { SMALL = 8, ROUNDS = 64, FIRST_ROUNDS = 400 };
+    const float tolerance = 0.003f;
     int longest = p->size[0] > p->size[1] ? p->size[0] : p->size[1];
     longest = longest > p->size[2] ? longest : p->size[2];
     if (longest <= SMALL)
-        return ordinates_solve(p, FIRST_ROUNDS, threads, error);
+        return ordinates_solve(p, FIRST_ROUNDS, 0.1f * tolerance, threads, error);
     ordinates_problem half = *p;
     for (int axis = 0; axis < 3; axis++) {
         half.size[axis] = (p->size[axis] + 1) / 2;
@@ -214,7 +215,7 @@ static shape_status solve_levels(ordinates_problem *p, int threads, shape_error 
     }
     if (!status) {
         refine(half.size, half.moments, p->size, p->moments);
-        status = ordinates_solve(p, ROUNDS, threads, error);
+        status = ordinates_solve(p, ROUNDS, tolerance, threads, error);
     }
     free(extinction);
     free(beam);

@@ -85,8 +85,30 @@ static void sweep(const ordinates_problem *p, const direction *d, float *radianc
     }
 }
 
-shape_status ordinates_solve(const ordinates_problem *p, int iterations, int threads, shape_error *error)
+/* Adds the octants' sums in order; the largest change of a mean radiance, and the largest mean radiance. */
+static void gather(const ordinates_problem *p, const float *sums, size_t cells, int threads, float *change,
+                   float *peak)
 {
+    float most_change = 0, most = 0;
+#pragma omp parallel for num_threads(threads) reduction(max : most_change, most)
+    for (size_t i = 0; i < cells * ORDINATES_CELL; i++) {
+        float total = 0;
+        for (int octant = 0; octant < OCTANTS; octant++)
+            total += sums[(size_t)octant * cells * ORDINATES_CELL + i];
+        if (i % ORDINATES_CELL < ORDINATES_LANES) {
+            most_change = fmaxf(most_change, fabsf(total - p->moments[i]));
+            most = fmaxf(most, total);
+        }
+        p->moments[i] = total;
+    }
+    *change = most_change;
+    *peak = most;
+}
+
+shape_status ordinates_solve(const ordinates_problem *p, int iterations, float tolerance, int threads,
+                             shape_error *error)
+{
+    float last_change = 0;
     size_t cells = (size_t)p->size[0] * (size_t)p->size[1] * (size_t)p->size[2];
     /* Each octant sums into memory of its own and the sums are added in order: equal for any number of threads. */
     float *sums = malloc(OCTANTS * cells * ORDINATES_CELL * sizeof *sums);
@@ -106,13 +128,13 @@ shape_status ordinates_solve(const ordinates_problem *p, int iterations, int thr
                 sweep(p, &d, radiance + (size_t)octant * cells * ORDINATES_LANES, sum);
             }
         }
-#pragma omp parallel for num_threads(threads)
-        for (size_t i = 0; i < cells * ORDINATES_CELL; i++) {
-            float total = 0;
-            for (int octant = 0; octant < OCTANTS; octant++)
-                total += sums[(size_t)octant * cells * ORDINATES_CELL + i];
-            p->moments[i] = total;
-        }
+        float change, peak;
+        gather(p, sums, cells, threads, &change, &peak);
+        /* Changes shrink like a geometric series; what is left of it is the error. */
+        float ratio = last_change > 0 ? fminf(change / last_change, 0.99f) : 0.99f;
+        if (change * ratio / (1 - ratio) <= tolerance * peak)
+            break;
+        last_change = change;
     }
     free(sums);
     free(radiance);

@@ -21,8 +21,9 @@ typedef struct ordinates_problem {
     float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
 } ordinates_problem;
 
-/* Source iteration, `iterations` times. The result does not depend on the number of threads. */
-shape_status ordinates_solve(const ordinates_problem *problem, int iterations, int threads,
+/* Source iteration, `iterations` times at the most, until what is left is estimated below `tolerance` of the largest mean
+ * radiance. The result does not depend on the number of threads. */
+shape_status ordinates_solve(const ordinates_problem *problem, int iterations, float tolerance, int threads,
                              shape_error *error);
 
 #endif
