@@ -301,6 +301,9 @@ shape_status shape_march_render(const shape_marcher *m, const shape_view *view, 
             stop = 1;
         }
     }
+    /* The thread that speaks may have had no row at all. */
+    if (!stop && m->options.progress && !m->options.progress(m->options.progress_context, 1))
+        stop = 1;
     if (cancelled)
         *cancelled = stop;
     return failed ? shape_error_memory(error) : SHAPE_OK;

@@ -343,6 +343,9 @@ static bool trace_pass(const canvas *picture, int samples, const shape_pathtrace
             stop = 1;
         }
     }
+    /* The thread that speaks may have had no row at all. */
+    if (!stop && options->progress && !options->progress(options->progress_context, to))
+        stop = 1;
     return !stop;
 }
 
