@@ -52,6 +52,13 @@ small="-q --headless --size 32x18 --samples 1 --light-grid 8"
 # shellcheck disable=SC2086
 "$bin/neph-view" spiral.neph $small -o again.pfm
 cmp spiral.pfm again.pfm || fail "the same command drew two pictures"
+# The seed is that of the rays' starts: 1 is the default, another one is another picture.
+# shellcheck disable=SC2086
+"$bin/neph-view" spiral.neph $small --seed 1 -o again.pfm
+cmp spiral.pfm again.pfm || fail "--seed 1 is not the default"
+# shellcheck disable=SC2086
+"$bin/neph-view" spiral.neph $small --seed 2 -o again.pfm
+! cmp -s spiral.pfm again.pfm || fail "--seed 2 drew what seed 1 draws"
 for method in exact paper paper-ndt; do
     # shellcheck disable=SC2086
     "$bin/neph-view" spiral.neph $small --method $method -o $method.pfm || fail "--method $method failed"

@@ -193,6 +193,7 @@ int main(int argc, char **argv)
     job.options.method = (shape_gl_method)method;
     job.options.shader_folder = shader_folder;
     job.options.paper_lod = paper_lod;
+    job.options.seed = common.seed;
     job.options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     if (!headless && !bench_given && common.output_given)
         cli_wrong("-o needs --headless or --bench (a window writes no picture)");

@@ -4,6 +4,7 @@ uniform vec2 picture_size; // pixels
 uniform vec2 picture_origin; // of a tile: pixels to the left of it and below
 uniform vec2 pixel_shift;  // within the pixel, 0 to 1
 uniform int sample_number;
+uniform int seed; // of the starts; 0 for the default seed
 
 vec3 camera_ray()
 {
@@ -24,6 +25,6 @@ uint hash_bits(uint x)
 float pixel_random()
 {
     uvec2 p = uvec2(gl_FragCoord.xy + picture_origin);
-    float start = float(hash_bits(p.x + hash_bits(p.y)) >> 8) / 16777216.0;
+    float start = float(hash_bits(p.x + hash_bits(p.y + uint(seed))) >> 8) / 16777216.0;
     return fract(start + float(sample_number) * 0.6180339887);
 }

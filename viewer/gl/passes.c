@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "gl_private.h"
+#include "shape/random.h"
 
 struct shape_gl_renderer {
     shape_gl_options options;
@@ -32,7 +33,7 @@ static double now_ms(void)
 shape_gl_options shape_gl_defaults(void)
 {
     shape_gl_options options = {
-        .method = SHAPE_GL_DEFAULT, .light = shape_lightgrid_defaults(), .bake_voxels = 12000000};
+        .method = SHAPE_GL_DEFAULT, .light = shape_lightgrid_defaults(), .bake_voxels = 12000000, .seed = 1};
     return options;
 }
 
@@ -258,6 +259,7 @@ static void set_method(const shape_gl_renderer *r, const shape_view *view, GLuin
     double pixel = 2 * tan(view->fov * 3.14159265358979 / 360) / view->height;
     /* exact: cells of the noise; default: voxels. */
     set_float(program, "step_scale", exact ? 0.125f : 1.5f);
+    set_int(program, "seed", (int)(uint32_t)(shape_hash(r->options.seed) ^ shape_hash(1)));
     set_float(program, "window_length", r->window_length);
     set_float(program, "step_depth", 0.25f);
     set_float(program, "step_growth", (float)pixel * (exact ? 0.5f : 2.0f));

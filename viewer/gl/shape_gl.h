@@ -31,6 +31,7 @@ typedef struct shape_gl_options {
     const char *shader_folder; /* read shaders from here instead of the built-in ones; NULL */
     shape_lightgrid_options light;
     size_t bake_voxels; /* of all clouds' baked grids together, at most */
+    uint64_t seed;      /* of the random starts of rays; default 1 */
     bool paper_lod;     /* the paper's printed distance formula for its step, rather than 0.1 */
 } shape_gl_options;
 
