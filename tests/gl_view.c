@@ -530,6 +530,55 @@ static void samples_refine_one_picture(void **state)
     shape_set_destroy(set);
 }
 
+/* A moving view is drawn at every second pixel and filled in: near the picture of the view at rest, at sizes that do not
+ * divide, with one cloud in a tile and with several, and again after a still picture. */
+static void a_moving_view_is_near_the_still_one(void **state)
+{
+    (void)state;
+    shape_set *set = new_set();
+    for (int i = 0; i < 3; i++) {
+        shape_cloud *cloud = new_cloud(set, SHAPE_MODEL_SPHEROID);
+        cloud->field.noise_scale = 0.4f;
+        cloud->medium.extinction = 4;
+        cloud->frame.m[0][3] = 1.5 * i - 2;
+        cloud->frame.m[2][3] = 0.5 * i;
+        add_sphere(set, (size_t)i, 0, 0, 0, 1.2);
+    }
+    shape_view view = view_of(133, 75, shape_dvec3_make(0, 0.5, 8), shape_dvec3_make(0, 0, 0), 40);
+    shape_light light = shape_light_defaults();
+    float *still = render(set, SHAPE_GL_DEFAULT, &view, &light, true, 16);
+    shape_gl_renderer *renderer = find_renderer(SHAPE_GL_DEFAULT, true);
+    shape_volume *volume = new_volume(set);
+    shape_error error;
+    must(shape_gl_load(renderer, volume, &error), &error);
+    must(shape_gl_light(renderer, &light, &error), &error);
+    size_t values = 133 * 75 * 4;
+    float *moving = malloc(values * sizeof *moving);
+    assert_non_null(moving);
+    double before = 0;
+    for (int round = 0; round < 2; round++) {
+        must(shape_gl_draw_moving(renderer, &view, &error), &error);
+        must(shape_gl_read(renderer, moving, &error), &error);
+        double sum = 0, worst = 0;
+        for (size_t i = 0; i < values; i++) {
+            double difference = (double)moving[i] - (double)still[i];
+            sum += difference * difference;
+            worst = fmax(worst, fabs(difference));
+        }
+        sum = sqrt(sum / (double)values);
+        print_message("moving against still: rms %.4f, most %.4f\n", sum, worst);
+        /* A tenth is what neighbours may differ by, and one sample has noise that the mean of sixteen has not. */
+        assert_true(sum < 0.01 && worst < 0.3 && sum > 0);
+        assert_true(round == 0 || sum == before);
+        before = sum;
+        must(shape_gl_draw(renderer, &view, 0, &error), &error);
+    }
+    shape_volume_destroy(volume);
+    free(moving);
+    free(still);
+    shape_set_destroy(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -550,6 +599,7 @@ int main(void)
         cmocka_unit_test(pictures_hold_no_nan_and_nothing_negative),
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(samples_refine_one_picture),
+        cmocka_unit_test(a_moving_view_is_near_the_still_one),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -137,7 +137,7 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
     double steps = 0, fetches = 0;
     for (int64_t i = 0; i < bench_frames; i++) {
         double start = now_ms();
-        cli_check(shape_gl_draw(renderer, &job->view, 0, &error), &error);
+        cli_check(shape_gl_draw_moving(renderer, &job->view, &error), &error);
         shape_gl_finish();
         times[i] = now_ms() - start;
         if (i == 0)

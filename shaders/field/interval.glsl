@@ -130,11 +130,13 @@ uniform highp sampler2D tiles;
 uniform int tile_columns;
 const int TILE = 32; // pixels
 
-ivec2 tile_clouds()
+ivec2 tile_clouds_at(ivec2 pixel)
 {
-    ivec2 tile = ivec2(gl_FragCoord.xy) / TILE;
+    ivec2 tile = pixel / TILE;
     return ivec2(linear_texel(tiles, tile.y * tile_columns + tile.x).xy);
 }
+
+ivec2 tile_clouds() { return tile_clouds_at(ivec2(gl_FragCoord.xy)); }
 
 void gather(vec3 direction, float t_min, float t_max)
 {

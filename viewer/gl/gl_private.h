@@ -8,18 +8,19 @@
 
 /* --- program.c --- */
 
-/* Compiles view/fullscreen.vert with the named fragment shader; `#include "x"` lines are replaced by file x. */
-shape_status gl_program_create(const char *folder, const char *fragment, GLuint *program, shape_error *error);
+/* Compiles two shaders of shaders/; `#include "x"` lines are replaced by file x. */
+shape_status gl_program_create(const char *folder, const char *vertex, const char *fragment, GLuint *program,
+                               shape_error *error);
 
 /* --- target.c --- */
 
 /* What a pass draws into: radiance and coverage; steps, fetches and where to go on. */
 typedef struct gl_target {
-    GLuint framebuffer, textures[2];
+    GLuint framebuffer, textures[2], depth;
 } gl_target;
 
-/* Makes, or makes anew, the textures of a size. */
-shape_status gl_target_make(gl_target *target, int width, int height, shape_error *error);
+/* Makes, or makes anew, the textures of a size, and a depth buffer where one is wanted. */
+shape_status gl_target_make(gl_target *target, int width, int height, bool depth, shape_error *error);
 void gl_target_free(gl_target *target);
 
 /* --- atlas.c --- */
@@ -57,9 +58,16 @@ GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, 
 
 /* --- tiles.c --- */
 
-/* Which shown clouds each tile of 32x32 pixels may see, as a float texture: offset and count a tile, then numbers. */
-GLuint gl_tiles_make(const gl_scene *scene, const shape_volume *volume, const shape_view *view,
-                     const shape_camera *camera, int *columns, shape_status *status, shape_error *error);
+/* Which shown clouds each tile of 32x32 pixels may see. */
+typedef struct gl_tiles {
+    GLuint lists; /* offset and count a tile, then numbers of clouds, as a float texture */
+    GLuint order; /* the tiles: those without a cloud, with one, with several; column, row, first cloud */
+    int columns, empty_count, one_count, several_count;
+} gl_tiles;
+
+shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
+                           const shape_view *view, const shape_camera *camera, shape_error *error);
+void gl_tiles_free(gl_tiles *tiles);
 
 /* --- grids.c --- */
 
@@ -84,5 +92,73 @@ void gl_grids_compose(gl_grids *grids, const gl_scene *scene, const shape_volume
 shape_status gl_grids_bake(gl_grids *grids, gl_scene *scene, const shape_volume *volume,
                            const shape_view *view, size_t budget, shape_error *error);
 void gl_grids_free(gl_grids *grids);
+
+/* --- passes.c --- */
+
+/* One picture, or one sample of it. */
+typedef struct gl_frame {
+    const shape_view *view;
+    const shape_camera *camera;
+    const gl_tiles *tiles;
+    int sample;
+    bool moving;
+} gl_frame;
+
+/* What the default method has of its own. */
+typedef struct gl_preview {
+    GLuint sky, one, several, fill, sky_picture_program;
+    gl_target coarse;      /* a moving view's first pass: every second pixel each way */
+    gl_target sky_picture; /* see shaders/view/sky_picture.glsl */
+    bool moving;           /* the last picture was a moving view's */
+} gl_preview;
+
+struct shape_gl_renderer {
+    shape_gl_options options;
+    const shape_volume *volume;
+    gl_scene scene;
+    gl_grids grids;
+    gl_preview preview;
+    shape_light light;
+    shape_sky sky;
+    float sky_upper[3], sky_lower[3];
+    GLuint view_program, tonemap, density, empty_array;
+    GLuint copy, query;
+    gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */
+    int width, height;
+    float window_length; /* of the exact view's candidates [m] */
+    shape_gl_costs costs;
+};
+
+void gl_draw_triangle(const shape_gl_renderer *renderer);
+/* What is drawn next is blended into the running mean: sample n counts 1 / (n + 1). */
+void gl_begin_mean(int sample);
+/* Steps, candidates and starts of a method. */
+void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GLuint program);
+
+/* --- preview.c: the default method --- */
+
+shape_status gl_preview_create(gl_preview *preview, const char *folder, shape_error *error);
+shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
+void gl_preview_draw(shape_gl_renderer *renderer, const gl_frame *frame);
+void gl_preview_free(gl_preview *preview);
+
+/* --- parts.c: the exact method --- */
+
+/* Draws a sample by the view program, which is set up, in parts: a part stops a pixel after some work and says where;
+ * the next goes on from there, until all are finished. */
+shape_status gl_draw_in_parts(shape_gl_renderer *renderer, int sample, shape_error *error);
+
+/* --- uniforms.c: what shaders are told; the program is in use --- */
+
+void gl_bind(GLuint program, const char *name, int unit, GLenum kind, GLuint texture);
+void gl_set_vector(GLuint program, const char *name, const float *v);
+void gl_set_dvector(GLuint program, const char *name, shape_dvec3 v);
+void gl_set_float(GLuint program, const char *name, float v);
+void gl_set_int(GLuint program, const char *name, int v);
+void gl_set_scene(const gl_scene *scene, GLuint program);
+void gl_set_grids(const gl_grids *grids, GLuint program);
+void gl_set_tiles(const gl_tiles *tiles, GLuint program);
+void gl_set_light(const shape_gl_renderer *renderer, GLuint program);
+void gl_set_camera(const shape_view *view, const shape_camera *camera, int sample, GLuint program);
 
 #endif

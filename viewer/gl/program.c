@@ -91,10 +91,11 @@ static shape_status compile(const char *folder, const char *name, GLenum kind, G
     return status;
 }
 
-shape_status gl_program_create(const char *folder, const char *fragment, GLuint *program, shape_error *error)
+shape_status gl_program_create(const char *folder, const char *vertex, const char *fragment, GLuint *program,
+                               shape_error *error)
 {
     GLuint vertex_shader, fragment_shader;
-    shape_status status = compile(folder, "view/fullscreen.vert", GL_VERTEX_SHADER, &vertex_shader, error);
+    shape_status status = compile(folder, vertex, GL_VERTEX_SHADER, &vertex_shader, error);
     if (status)
         return status;
     status = compile(folder, fragment, GL_FRAGMENT_SHADER, &fragment_shader, error);

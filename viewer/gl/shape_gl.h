@@ -60,6 +60,10 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
  * refines it (other starts of the rays, other places within the pixels). Returns without waiting for the GPU. */
 shape_status shape_gl_draw(shape_gl_renderer *renderer, const shape_view *view, int sample,
                            shape_error *error);
+/* Draws a picture of a view that moves, as a sample 0 that is good enough for a moment: of the default method, every
+ * second pixel each way is marched and the others are taken from their neighbours where those agree. The other methods
+ * draw what shape_gl_draw draws. */
+shape_status shape_gl_draw_moving(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
 /* Waits until all that was drawn is done. */
 void shape_gl_finish(void);
 /* Reads the picture: linear radiance, rows from the top, width * height * 4 floats into the caller's buffer (red,

@@ -6,11 +6,12 @@
 void gl_target_free(gl_target *target)
 {
     glDeleteTextures(2, target->textures);
+    glDeleteRenderbuffers(1, &target->depth);
     glDeleteFramebuffers(1, &target->framebuffer);
     memset(target, 0, sizeof *target);
 }
 
-shape_status gl_target_make(gl_target *target, int width, int height, shape_error *error)
+shape_status gl_target_make(gl_target *target, int width, int height, bool depth, shape_error *error)
 {
     static const GLenum buffers[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
     gl_target_free(target);
@@ -23,6 +24,12 @@ shape_status gl_target_make(gl_target *target, int width, int height, shape_erro
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, NULL);
         glFramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target->textures[i], 0);
+    }
+    if (depth) {
+        glGenRenderbuffers(1, &target->depth);
+        glBindRenderbuffer(GL_RENDERBUFFER, target->depth);
+        glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, width, height);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target->depth);
     }
     glDrawBuffers(2, buffers);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)

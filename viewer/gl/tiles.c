@@ -1,6 +1,7 @@
 /* Which clouds a tile of the picture may see: boxes projected to the screen, so that a ray asks only its tile's. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "gl_private.h"
 
@@ -36,16 +37,44 @@ static rectangle cover(const shape_volume_cloud *c, const shape_view *view, cons
     return r;
 }
 
-GLuint gl_tiles_make(const gl_scene *scene, const shape_volume *volume, const shape_view *view,
-                     const shape_camera *camera, int *columns, shape_status *status, shape_error *error)
+/* The tiles in the order in which they are drawn, as a texture: those without a cloud, with one, with several. */
+static shape_status order_tiles(gl_tiles *tiles, int rows, const float *lists, shape_error *error)
+{
+    int tile_count = tiles->columns * rows, counts[3] = {0}, next[3];
+    float *order = calloc((size_t)tile_count * 4 + 4, sizeof *order);
+    if (!order)
+        return shape_error_memory(error);
+    for (int i = 0; i < tile_count; i++)
+        counts[(int)fminf(lists[4 * i + 1], 2)]++;
+    for (int kind = 0, place = 0; kind < 3; place += counts[kind++])
+        next[kind] = place;
+    for (int i = 0; i < tile_count; i++) {
+        const float *list = lists + 4 * i;
+        float *tile = order + 4 * next[(int)fminf(list[1], 2)]++;
+        tile[0] = (float)(i % tiles->columns);
+        tile[1] = (float)(i / tiles->columns);
+        tile[2] = list[1] > 0 ? lists[4 * (size_t)list[0]] : 0;
+    }
+    tiles->empty_count = counts[0];
+    tiles->one_count = counts[1];
+    tiles->several_count = counts[2];
+    shape_status status = SHAPE_OK;
+    tiles->order = gl_float_texture(order, (size_t)tile_count, &status, error);
+    free(order);
+    return status;
+}
+
+shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
+                           const shape_view *view, const shape_camera *camera, shape_error *error)
 {
     int across = (view->width + TILE - 1) / TILE, down = (view->height + TILE - 1) / TILE;
     size_t tile_count = (size_t)across * (size_t)down, total = 0;
     rectangle *covers = malloc(((size_t)scene->shown_count + 1) * sizeof *covers);
     size_t *next = calloc(tile_count + 1, sizeof *next);
     float *texels = NULL;
-    GLuint texture = 0;
-    *columns = across;
+    shape_status status = SHAPE_OK;
+    memset(tiles, 0, sizeof *tiles);
+    tiles->columns = across;
     for (int i = 0; covers && next && i < scene->shown_count; i++) {
         covers[i] = cover(&volume->clouds[scene->shown[i]], view, camera, across, down);
         for (int y = covers[i].y0; y <= covers[i].y1; y++)
@@ -57,7 +86,7 @@ GLuint gl_tiles_make(const gl_scene *scene, const shape_volume *volume, const sh
     if (covers && next)
         texels = calloc((tile_count + total + 1) * 4, sizeof *texels);
     if (!texels) {
-        *status = shape_error_memory(error);
+        status = shape_error_memory(error);
     } else {
         size_t offset = tile_count;
         for (size_t i = 0; i < tile_count; i++) {
@@ -71,10 +100,18 @@ GLuint gl_tiles_make(const gl_scene *scene, const shape_volume *volume, const sh
             for (int y = covers[i].y0; y <= covers[i].y1; y++)
                 for (int x = covers[i].x0; x <= covers[i].x1; x++)
                     texels[4 * next[y * across + x]++] = (float)i;
-        texture = gl_float_texture(texels, tile_count + total, status, error);
+        tiles->lists = gl_float_texture(texels, tile_count + total, &status, error);
+        if (!status)
+            status = order_tiles(tiles, down, texels, error);
     }
     free(covers);
     free(next);
     free(texels);
-    return texture;
+    return status;
+}
+
+void gl_tiles_free(gl_tiles *tiles)
+{
+    glDeleteTextures(1, &tiles->lists);
+    glDeleteTextures(1, &tiles->order);
 }
