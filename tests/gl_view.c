@@ -579,6 +579,59 @@ static void a_moving_view_is_near_the_still_one(void **state)
     shape_set_destroy(set);
 }
 
+/* In the background: something at once, and in the end the very picture that one gets by waiting; nothing is left of the
+ * coarse one. A nearer view asks for finer voxels and gets those. */
+static void what_is_made_meanwhile_is_the_same(void **state)
+{
+    (void)state;
+    shape_set *set = new_set();
+    shape_cloud *cloud = new_cloud(set, SHAPE_MODEL_SPHEROID);
+    cloud->field.noise_scale = 1.2f;
+    for (int i = 0; i < 5; i++)
+        add_sphere(set, 0, 1.5 * i - 3, 0.3 * i, 0, 2);
+    shape_light light = shape_light_defaults();
+    shape_view view = view_of(96, 54, shape_dvec3_make(0, 0.5, 40), shape_dvec3_make(0, 0, 0), 30);
+    shape_gl_options options = shape_gl_defaults();
+    options.light.resolution = 24;
+    options.background = true;
+    options.bake_voxels = 3000000;
+    shape_error error;
+    shape_gl_renderer *renderer[2];
+    for (int i = 0; i < 2; i++) {
+        options.background = i == 0;
+        must(shape_gl_create(&options, &renderer[i], &error), &error);
+    }
+    shape_volume *volume = new_volume(set);
+    size_t values = 96 * 54 * 4;
+    float *pictures[2] = {malloc(values * sizeof(float)), malloc(values * sizeof(float))};
+    assert_true(pictures[0] && pictures[1]);
+    for (int round = 0; round < 2; round++, view.eye.z = 12) {
+        for (int i = 0; i < 2; i++) {
+            if (round == 0) {
+                must(shape_gl_load(renderer[i], volume, &error), &error);
+                must(shape_gl_light(renderer[i], &light, &error), &error);
+            }
+            int frames = 0;
+            do {
+                must(shape_gl_draw_moving(renderer[i], &view, &error), &error);
+                shape_gl_finish();
+                assert_true(frames++ < 100000);
+            } while (shape_gl_pending(renderer[i]));
+            assert_int_equal(shape_gl_refined(renderer[i]), i == 0);
+            assert_true(i == 1 || frames > 1);
+            must(shape_gl_draw(renderer[i], &view, 0, &error), &error);
+            must(shape_gl_read(renderer[i], pictures[i], &error), &error);
+        }
+        assert_memory_equal(pictures[0], pictures[1], values * sizeof(float));
+    }
+    for (int i = 0; i < 2; i++) {
+        shape_gl_destroy(renderer[i]);
+        free(pictures[i]);
+    }
+    shape_volume_destroy(volume);
+    shape_set_destroy(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -600,6 +653,7 @@ int main(void)
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(samples_refine_one_picture),
         cmocka_unit_test(a_moving_view_is_near_the_still_one),
+        cmocka_unit_test(what_is_made_meanwhile_is_the_same),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

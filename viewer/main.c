@@ -116,7 +116,7 @@ static void print_bench(const view_job *job, shape_gl_costs costs, double first_
         json_pack("{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f}, s:I, s:f, s:f}", "method",
                   method_names[job->options.method], "size", job->view.width, job->view.height, "frames",
                   count, "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms",
-                  0.0, "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2],
+                  costs.bake_ms, "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2],
                   "p95", times[p95], "primitives", (json_int_t)count_primitives(job->volume),
                   "steps_per_pixel", costs.steps_per_pixel, "fetches_per_pixel", costs.fetches_per_pixel);
     if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) ||
@@ -194,6 +194,7 @@ int main(int argc, char **argv)
     job.options.shader_folder = shader_folder;
     job.options.paper_lod = paper_lod;
     job.options.seed = common.seed;
+    job.options.background = bench_given || !headless;
     job.options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     if (!headless && !bench_given && common.output_given)
         cli_wrong("-o needs --headless or --bench (a window writes no picture)");

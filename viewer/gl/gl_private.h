@@ -22,6 +22,8 @@ typedef struct gl_target {
 /* Makes, or makes anew, the textures of a size, and a depth buffer where one is wanted. */
 shape_status gl_target_make(gl_target *target, int width, int height, bool depth, shape_error *error);
 void gl_target_free(gl_target *target);
+/* A 3-D texture with linear filtering, clamped at its edges; data may be NULL. */
+GLuint gl_volume_texture(const int size[3], GLint internal, GLenum format, GLenum kind, const void *data);
 
 /* --- atlas.c --- */
 
@@ -69,29 +71,63 @@ shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_v
                            const shape_view *view, const shape_camera *camera, shape_error *error);
 void gl_tiles_free(gl_tiles *tiles);
 
-/* --- grids.c --- */
+/* --- grid_light.c, grid_baked.c: what is made on the CPU and then uploaded --- */
 
-/* Light grids and baked densities of all clouds, and their textures. */
-typedef struct gl_grids {
-    shape_lightgrid *light;
-    gl_box *light_boxes;
-    int light_size[3], count;
-    float *seen; /* the composed light, as uploaded */
-    GLuint light_a, light_b, light_seen, baked;
-} gl_grids;
+/* What is to be made, and how. */
+typedef struct gl_order {
+    const shape_volume *volume;
+    const shape_light *light;
+    bool want_light, want_baked, paper;
+    shape_lightgrid_options light_options;
+    shape_view view;
+    size_t bake_voxels; /* at most, of all clouds together */
+    int texture_limit, threads;
+} gl_order;
 
-/* Takes over the light grids (allocated, one a cloud) and uploads them: both value textures, or only what
- * gl_grids_compose needs. */
-shape_status gl_grids_set_light(gl_grids *grids, gl_scene *scene, const shape_volume *volume,
-                                shape_lightgrid *light, bool values, shape_error *error);
+/* Light grids of all clouds. Shared: the last user's drop frees it. */
+typedef struct gl_light {
+    int uses, count, size[3];
+    shape_lightgrid *grids;
+    gl_box *boxes;
+    float *cells; /* scratch, as large as the atlas */
+    GLuint a, b, seen;
+} gl_light;
+
+shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
+void gl_light_upload(gl_light *light); /* the values as they are */
+void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *volume);
 /* Composes the light of the shown clouds for an eye and uploads it. */
-void gl_grids_compose(gl_grids *grids, const gl_scene *scene, const shape_volume *volume,
-                      const shape_light *light, const float sky_upper[3], const float sky_lower[3],
-                      shape_dvec3 eye);
-/* Bakes every cloud's density with voxels as fine as the view needs, within `budget` voxels in all, and uploads. */
-shape_status gl_grids_bake(gl_grids *grids, gl_scene *scene, const shape_volume *volume,
-                           const shape_view *view, size_t budget, shape_error *error);
-void gl_grids_free(gl_grids *grids);
+void gl_light_compose(gl_light *light, const shape_gl_renderer *renderer, shape_dvec3 eye);
+void gl_light_drop(gl_light *light); /* NULL is allowed */
+
+typedef struct gl_baked_cloud {
+    shape_vec3 low;
+    float voxel, wanted; /* what was made, what the view asked for [m, cloud's frame] */
+    bool at_limit;       /* no finer one fits into the limit of voxels */
+} gl_baked_cloud;
+
+/* Baked densities of all clouds. Shared like gl_light. */
+typedef struct gl_baked {
+    int uses, count, size[3];
+    gl_baked_cloud *clouds;
+    gl_box *boxes;
+    uint8_t *atlas; /* until it is uploaded */
+    GLuint texture;
+} gl_baked;
+
+/* Whether the voxels are those that a view asks for. */
+typedef enum gl_fit { GL_FITS, GL_TOO_FINE, GL_FAR_TOO_FINE, GL_TOO_COARSE } gl_fit;
+
+shape_status gl_baked_make(const gl_order *order, gl_baked **made, shape_error *error); /* needs no OpenGL */
+void gl_baked_upload(gl_baked *baked);
+void gl_baked_place(const gl_baked *baked, gl_scene *scene);
+gl_fit gl_baked_fit(const gl_baked *baked, const shape_volume *volume, const shape_view *view);
+void gl_baked_drop(gl_baked *baked); /* NULL is allowed */
+
+typedef struct gl_grids {
+    gl_light *light;
+    gl_baked *baked; /* of the default method */
+} gl_grids;
 
 /* --- passes.c --- */
 
@@ -102,6 +138,7 @@ typedef struct gl_frame {
     const gl_tiles *tiles;
     int sample;
     bool moving;
+    float share; /* of what is drawn in the picture that is there already, 1: all; of moving pictures */
 } gl_frame;
 
 /* What the default method has of its own. */
@@ -112,11 +149,17 @@ typedef struct gl_preview {
     bool moving;           /* the last picture was a moving view's */
 } gl_preview;
 
+typedef struct gl_refinement gl_refinement;
+enum { GL_FADE_FRAMES = 6 }; /* from old grids to new ones */
+
 struct shape_gl_renderer {
     shape_gl_options options;
     const shape_volume *volume;
     gl_scene scene;
-    gl_grids grids;
+    gl_grids grids, last_grids; /* the last ones are faded out while fade_left frames remain */
+    gl_refinement *refinement;  /* what is being made on a thread, or NULL */
+    int fade_left;
+    bool light_changed, refined;
     gl_preview preview;
     shape_light light;
     shape_sky sky;
@@ -129,17 +172,27 @@ struct shape_gl_renderer {
     shape_gl_costs costs;
 };
 
+void gl_grids_drop(gl_grids *grids);
 void gl_draw_triangle(const shape_gl_renderer *renderer);
 /* What is drawn next is blended into the running mean: sample n counts 1 / (n + 1). */
 void gl_begin_mean(int sample);
+/* What is drawn next is blended into the picture that is there, with this share. */
+void gl_begin_mix(float share);
 /* Steps, candidates and starts of a method. */
 void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GLuint program);
+
+/* --- refine.c --- */
+
+/* Before a picture: makes what it needs, or, in the background, something coarse, with the rest to come. */
+shape_status gl_refine(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
+/* Waits for the thread and throws away what it made. */
+void gl_refine_stop(shape_gl_renderer *renderer);
 
 /* --- preview.c: the default method --- */
 
 shape_status gl_preview_create(gl_preview *preview, const char *folder, shape_error *error);
 shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
-void gl_preview_draw(shape_gl_renderer *renderer, const gl_frame *frame);
+void gl_preview_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame);
 void gl_preview_free(gl_preview *preview);
 
 /* --- parts.c: the exact method --- */

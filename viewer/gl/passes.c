@@ -66,12 +66,21 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     return SHAPE_OK;
 }
 
+void gl_grids_drop(gl_grids *grids)
+{
+    gl_light_drop(grids->light);
+    gl_baked_drop(grids->baked);
+    memset(grids, 0, sizeof *grids);
+}
+
 void shape_gl_destroy(shape_gl_renderer *renderer)
 {
     if (!renderer)
         return;
+    gl_refine_stop(renderer);
     gl_scene_free(&renderer->scene);
-    gl_grids_free(&renderer->grids);
+    gl_grids_drop(&renderer->grids);
+    gl_grids_drop(&renderer->last_grids);
     gl_preview_free(&renderer->preview);
     glDeleteProgram(renderer->view_program);
     glDeleteProgram(renderer->tonemap);
@@ -102,47 +111,27 @@ static float window_length(const shape_volume *volume)
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
 {
     double start = now_ms();
+    gl_refine_stop(renderer);
+    gl_grids_drop(&renderer->grids);
+    gl_grids_drop(&renderer->last_grids);
+    renderer->fade_left = 0;
     renderer->volume = volume;
-    gl_grids_free(&renderer->grids); /* those of the last volume */
     renderer->window_length = window_length(volume);
     shape_status status = gl_scene_load(&renderer->scene, volume, error);
     renderer->costs.upload_ms = now_ms() - start;
     return status;
 }
 
-static shape_status build_light(const shape_gl_renderer *renderer, size_t cloud, shape_lightgrid *grid,
-                                shape_error *error)
-{
-    const shape_lightgrid_options *options = &renderer->options.light;
-    if (is_paper(renderer))
-        return shape_lightgrid_build_2018(renderer->volume, cloud, &renderer->light, options->resolution,
-                                          0.1f, grid, error);
-    return shape_lightgrid_build(renderer->volume, cloud, &renderer->light, options, grid, error);
-}
-
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
 {
-    double start = now_ms();
-    size_t count = renderer->volume->cloud_count;
+    (void)error;
+    const shape_dvec3 *old = &renderer->light.sun, *sun = &light->sun;
+    if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light)
+        renderer->light_changed = true;
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
-    shape_lightgrid *grids = calloc(count + 1, sizeof *grids);
-    if (!grids)
-        return shape_error_memory(error);
-    shape_status status = SHAPE_OK;
-    for (size_t i = 0; i < count && !status; i++)
-        status = build_light(renderer, i, &grids[i], error);
-    if (status) {
-        for (size_t i = 0; i < count; i++)
-            shape_lightgrid_free(&grids[i]);
-        free(grids);
-    } else {
-        status = gl_grids_set_light(&renderer->grids, &renderer->scene, renderer->volume, grids,
-                                    renderer->options.method != SHAPE_GL_DEFAULT, error);
-    }
-    renderer->costs.light_ms = now_ms() - start;
-    return status;
+    return SHAPE_OK;
 }
 
 /* The buffers that pictures are drawn into, remade where the size changes. */
@@ -181,28 +170,24 @@ void gl_set_method(const shape_gl_renderer *r, const shape_view *view, GLuint pr
     gl_set_int(program, "paper_lod", r->options.paper_lod);
 }
 
-static shape_status bake(shape_gl_renderer *renderer, const shape_view *view, shape_error *error)
-{
-    double start = now_ms();
-    shape_status status = gl_grids_bake(&renderer->grids, &renderer->scene, renderer->volume, view,
-                                        renderer->options.bake_voxels, error);
-    renderer->costs.bake_ms = now_ms() - start;
-    return status;
-}
-
 void gl_draw_triangle(const shape_gl_renderer *renderer)
 {
     glBindVertexArray(renderer->empty_array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void gl_begin_mean(int sample)
+void gl_begin_mix(float share)
 {
-    if (!sample)
+    if (share >= 1)
         return;
     glEnable(GL_BLEND);
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
-    glBlendColor(0, 0, 0, 1.0f / (float)(sample + 1));
+    glBlendColor(0, 0, 0, share);
+}
+
+void gl_begin_mean(int sample)
+{
+    gl_begin_mix(1.0f / (float)(sample + 1));
 }
 
 /* A sample of the other methods: one program over the whole picture. */
@@ -226,28 +211,44 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     return SHAPE_OK;
 }
 
+/* The preview by one set of grids. */
+static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_frame *frame, shape_error *error)
+{
+    gl_light_place(grids->light, &renderer->scene, renderer->volume);
+    if (grids->baked)
+        gl_baked_place(grids->baked, &renderer->scene);
+    gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
+    if (renderer->options.method != SHAPE_GL_DEFAULT)
+        return draw_whole(renderer, frame, error);
+    if (frame->sample == 0)
+        gl_light_compose(grids->light, renderer, frame->camera->origin);
+    gl_preview_draw(renderer, grids, frame);
+    return SHAPE_OK;
+}
+
 static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, int sample, bool moving,
                          shape_error *error)
 {
-    bool preview = renderer->options.method == SHAPE_GL_DEFAULT;
     shape_status status = prepare_targets(renderer, view->width, view->height, error);
-    if (!status && preview && !renderer->grids.baked)
-        status = bake(renderer, view, error);
+    if (!status)
+        status = gl_refine(renderer, view, error);
     if (status)
         return status;
     shape_camera camera = shape_view_camera(view);
-    gl_scene_place_eye(&renderer->scene, renderer->volume, &camera);
-    if (preview && sample == 0)
-        gl_grids_compose(&renderer->grids, &renderer->scene, renderer->volume, &renderer->light,
-                         renderer->sky_upper, renderer->sky_lower, camera.origin);
     gl_tiles tiles;
-    gl_frame frame = {view, &camera, &tiles, sample, moving};
+    gl_frame frame = {view, &camera, &tiles, sample, moving, 1};
+    gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
     status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, &camera, error);
-    if (!status && preview)
-        gl_preview_draw(renderer, &frame);
-    else if (!status)
-        status = draw_whole(renderer, &frame, error);
+    if (!status && moving && renderer->fade_left > 0) {
+        status = draw_by(renderer, &renderer->last_grids, &frame, error);
+        frame.share = 1 - (float)renderer->fade_left / (GL_FADE_FRAMES + 1);
+        renderer->fade_left--;
+    }
+    if (!status)
+        status = draw_by(renderer, &renderer->grids, &frame, error);
     gl_tiles_free(&tiles);
+    if (renderer->fade_left == 0)
+        gl_grids_drop(&renderer->last_grids);
     if (!status && glGetError() == GL_OUT_OF_MEMORY)
         return shape_error_set(error, SHAPE_ERROR_MEMORY,
                                "the GPU has not enough memory (make the picture smaller)");
@@ -263,6 +264,18 @@ shape_status shape_gl_draw(shape_gl_renderer *renderer, const shape_view *view, 
 shape_status shape_gl_draw_moving(shape_gl_renderer *renderer, const shape_view *view, shape_error *error)
 {
     return draw(renderer, view, 0, true, error);
+}
+
+bool shape_gl_refined(shape_gl_renderer *renderer)
+{
+    bool refined = renderer->refined;
+    renderer->refined = false;
+    return refined;
+}
+
+bool shape_gl_pending(const shape_gl_renderer *renderer)
+{
+    return renderer->refinement || renderer->fade_left > 0;
 }
 
 void shape_gl_finish(void)

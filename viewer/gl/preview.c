@@ -63,82 +63,91 @@ static void draw_sky_picture(const shape_gl_renderer *r, const gl_frame *frame)
     gl_draw_triangle(r);
 }
 
+/* A frame by one set of grids. */
+typedef struct gl_pass {
+    const gl_frame *frame;
+    const gl_grids *grids;
+} gl_pass;
+
 /* What all of the preview's programs may ask for. */
-static void set_all(const shape_gl_renderer *r, const gl_frame *frame, GLuint program, int stride)
+static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint program, int stride)
 {
     glUseProgram(program);
     gl_set_scene(&r->scene, program);
-    gl_set_grids(&r->grids, program);
-    gl_set_tiles(frame->tiles, program);
-    gl_set_camera(frame->view, frame->camera, frame->sample, program);
-    gl_set_method(r, frame->view, program);
+    gl_set_grids(pass->grids, program);
+    gl_set_tiles(pass->frame->tiles, program);
+    gl_set_camera(pass->frame->view, pass->frame->camera, pass->frame->sample, program);
+    gl_set_method(r, pass->frame->view, program);
     gl_bind(program, "sky_picture", 14, GL_TEXTURE_2D, r->preview.sky_picture.textures[0]);
     gl_set_float(program, "pixel_stride", (float)stride);
-    gl_set_float(program, "step_deep", frame->moving ? 2.0f : 0.0f);
+    gl_set_float(program, "step_deep", pass->frame->moving ? 2.0f : 0.0f);
     glUniform2f(glGetUniformLocation(program, "target_size"), (float)((r->width + stride - 1) / stride),
                 (float)((r->height + stride - 1) / stride));
 }
 
 /* Draws `count` tiles of the list from `first` on. */
-static void draw_tiles(const shape_gl_renderer *r, const gl_frame *frame, GLuint program, int stride,
-                       int first, int count)
+static void draw_tiles(const shape_gl_renderer *r, const gl_pass *pass, GLuint program, int stride, int first,
+                       int count)
 {
     if (!count)
         return;
-    set_all(r, frame, program, stride);
+    set_all(r, pass, program, stride);
     gl_set_int(program, "tile_first", first);
     glBindVertexArray(r->empty_array);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count);
 }
 
-static void draw_clouds(const shape_gl_renderer *r, const gl_frame *frame, int stride)
+static void draw_clouds(const shape_gl_renderer *r, const gl_pass *pass, int stride)
 {
-    const gl_tiles *tiles = frame->tiles;
-    draw_tiles(r, frame, r->preview.one, stride, tiles->empty_count, tiles->one_count);
-    draw_tiles(r, frame, r->preview.several, stride, tiles->empty_count + tiles->one_count,
+    const gl_tiles *tiles = pass->frame->tiles;
+    draw_tiles(r, pass, r->preview.one, stride, tiles->empty_count, tiles->one_count);
+    draw_tiles(r, pass, r->preview.several, stride, tiles->empty_count + tiles->one_count,
                tiles->several_count);
 }
 
-static void draw_moving(const shape_gl_renderer *r, const gl_frame *frame)
+static void draw_moving(const shape_gl_renderer *r, const gl_pass *pass)
 {
     static const float nothing[] = {0, 0, 0, 1}, no_work[] = {0, 0, 0, 0}, far = 1;
     glBindFramebuffer(GL_FRAMEBUFFER, r->preview.coarse.framebuffer);
     glViewport(0, 0, (r->width + 1) / 2, (r->height + 1) / 2);
     glClearBufferfv(GL_COLOR, 0, nothing);
     glClearBufferfv(GL_COLOR, 1, no_work);
-    draw_clouds(r, frame, 2);
+    draw_clouds(r, pass, 2);
 
     GLuint fill = r->preview.fill;
     glBindFramebuffer(GL_FRAMEBUFFER, r->mean.framebuffer);
     glViewport(0, 0, r->width, r->height);
     glClearBufferfv(GL_DEPTH, 0, &far);
-    set_all(r, frame, fill, 1);
+    set_all(r, pass, fill, 1);
     gl_bind(fill, "coarse_picture", 12, GL_TEXTURE_2D, r->preview.coarse.textures[0]);
     gl_set_float(fill, "coarse_agreement", AGREEMENT);
     /* What is filled is marked by its depth; the marching passes the depth test elsewhere only. */
+    gl_begin_mix(pass->frame->share);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthRange(0, 0);
     gl_draw_triangle(r);
     glDepthRange(0.5, 0.5);
     glDepthFunc(GL_LESS);
-    draw_clouds(r, frame, 1);
+    draw_clouds(r, pass, 1);
     glDepthRange(0, 1);
     glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
 }
 
-void gl_preview_draw(shape_gl_renderer *r, const gl_frame *frame)
+void gl_preview_draw(shape_gl_renderer *r, const gl_grids *grids, const gl_frame *frame)
 {
+    gl_pass pass = {frame, grids};
     draw_sky_picture(r, frame);
     r->preview.moving = frame->moving;
     if (frame->moving) {
-        draw_moving(r, frame);
+        draw_moving(r, &pass);
         return;
     }
     glBindFramebuffer(GL_FRAMEBUFFER, r->mean.framebuffer);
     glViewport(0, 0, r->width, r->height);
     gl_begin_mean(frame->sample);
-    draw_tiles(r, frame, r->preview.sky, 1, 0, frame->tiles->empty_count);
-    draw_clouds(r, frame, 1);
+    draw_tiles(r, &pass, r->preview.sky, 1, 0, frame->tiles->empty_count);
+    draw_clouds(r, &pass, 1);
     glDisable(GL_BLEND);
 }

@@ -32,7 +32,9 @@ typedef struct shape_gl_options {
     shape_lightgrid_options light;
     size_t bake_voxels; /* of all clouds' baked grids together, at most */
     uint64_t seed;      /* of the random starts of rays; default 1 */
-    bool paper_lod;     /* the paper's printed distance formula for its step, rather than 0.1 */
+    bool
+        background; /* default method: draw at once by something coarse, and make the rest on a thread meanwhile */
+    bool paper_lod; /* the paper's printed distance formula for its step, rather than 0.1 */
 } shape_gl_options;
 
 shape_gl_options shape_gl_defaults(void);
@@ -52,8 +54,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer); /* NULL is allowed */
 
 /* Uploads a volume; it must live until the next load or the end. */
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error);
-/* The light pass, on the CPU, and its upload. Needed after shape_gl_load and whenever the sun's direction changes;
- * colours may change without it. */
+/* Sets the light; needed after shape_gl_load. The light pass, on the CPU, is made before the next picture. */
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error);
 
 /* Draws sample number `sample` of a picture into the renderer's buffer: sample 0 begins a new picture, each further one
@@ -64,6 +65,10 @@ shape_status shape_gl_draw(shape_gl_renderer *renderer, const shape_view *view, 
  * second pixel each way is marched and the others are taken from their neighbours where those agree. The other methods
  * draw what shape_gl_draw draws. */
 shape_status shape_gl_draw_moving(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
+/* Whether something finer has come into use since the last call: time to begin a picture at rest anew. */
+bool shape_gl_refined(shape_gl_renderer *renderer);
+/* Whether something finer is still to come, or fading in: draw on. */
+bool shape_gl_pending(const shape_gl_renderer *renderer);
 /* Waits until all that was drawn is done. */
 void shape_gl_finish(void);
 /* Reads the picture: linear radiance, rows from the top, width * height * 4 floats into the caller's buffer (red,

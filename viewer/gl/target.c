@@ -1,4 +1,4 @@
-/* Float textures to draw into. */
+/* Textures: float ones to draw into, and volumes. */
 #include <string.h>
 
 #include "gl_private.h"
@@ -35,4 +35,19 @@ shape_status gl_target_make(gl_target *target, int width, int height, bool depth
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         return shape_error_set(error, SHAPE_ERROR_SYSTEM, "this GPU cannot draw into 32-bit float textures");
     return SHAPE_OK;
+}
+
+GLuint gl_volume_texture(const int size[3], GLint internal, GLenum format, GLenum kind, const void *data)
+{
+    static const GLenum edges[] = {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R};
+    GLuint texture;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_3D, texture);
+    for (int i = 0; i < 3; i++)
+        glTexParameteri(GL_TEXTURE_3D, edges[i], GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage3D(GL_TEXTURE_3D, 0, internal, size[0], size[1], size[2], 0, format, kind, data);
+    return texture;
 }

@@ -44,10 +44,10 @@ void gl_set_scene(const gl_scene *scene, GLuint program)
 
 void gl_set_grids(const gl_grids *grids, GLuint program)
 {
-    gl_bind(program, "light_a", 6, GL_TEXTURE_3D, grids->light_a);
-    gl_bind(program, "light_b", 7, GL_TEXTURE_3D, grids->light_b);
-    gl_bind(program, "light_seen", 9, GL_TEXTURE_3D, grids->light_seen);
-    gl_bind(program, "baked", 10, GL_TEXTURE_3D, grids->baked);
+    gl_bind(program, "light_a", 6, GL_TEXTURE_3D, grids->light->a);
+    gl_bind(program, "light_b", 7, GL_TEXTURE_3D, grids->light->b);
+    gl_bind(program, "light_seen", 9, GL_TEXTURE_3D, grids->light->seen);
+    gl_bind(program, "baked", 10, GL_TEXTURE_3D, grids->baked ? grids->baked->texture : 0);
 }
 
 void gl_set_light(const shape_gl_renderer *r, GLuint program)
