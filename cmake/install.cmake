@@ -3,6 +3,9 @@
 # Programs, headers and shaders are found by folder; a new one needs no line here.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+find_program(GZIP gzip REQUIRED)
+set(NEPHELE_DATA ${CMAKE_INSTALL_DATADIR}/nephele)
+set(NEPHELE_DOC ${CMAKE_INSTALL_DATADIR}/doc/nephele)
 
 # --- libshape.so, of the same objects as libshape.a. SOVERSION rises where a program would have to be built anew.
 set(SHAPE_SOVERSION 1)
@@ -58,7 +61,10 @@ if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR)
         DEPENDS ${program})
       list(APPEND NEPHELE_PAGES ${page})
     endforeach()
-    install(FILES ${CMAKE_BINARY_DIR}/pages/man/${program} RENAME ${program}.1
+    set(page ${CMAKE_BINARY_DIR}/pages/man/${program})
+    add_custom_command(OUTPUT ${page}.1.gz COMMAND ${GZIP} -9nc ${page} > ${page}.1.gz DEPENDS ${page})
+    list(APPEND NEPHELE_PAGES ${page}.1.gz)
+    install(FILES ${page}.1.gz
             DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs)
     install(FILES ${CMAKE_BINARY_DIR}/pages/bash/${program}
             DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT programs)
@@ -80,7 +86,6 @@ foreach(library shape shape_scene shape_io)
 endforeach()
 install(DIRECTORY libshape/include/shape DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 set(NEPHELE_CMAKE ${CMAKE_INSTALL_LIBDIR}/cmake/Nephele)
-set(NEPHELE_DATA ${CMAKE_INSTALL_DATADIR}/nephele)
 configure_package_config_file(cmake/NepheleConfig.cmake.in ${CMAKE_BINARY_DIR}/NepheleConfig.cmake
   INSTALL_DESTINATION ${NEPHELE_CMAKE} PATH_VARS CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_LIBDIR NEPHELE_DATA)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/NepheleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
@@ -93,7 +98,9 @@ install(DIRECTORY shaders DESTINATION ${NEPHELE_DATA} COMPONENT development
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.frag" PATTERN "*.vert" PATTERN "*.md")
 
 # --- what to read and to begin with
-install(DIRECTORY examples DESTINATION ${NEPHELE_DATA} COMPONENT programs
-        FILES_MATCHING PATTERN "*.lsys" PATTERN "*.json" PATTERN "*.glb")
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
+install(DIRECTORY examples/ DESTINATION ${NEPHELE_DATA}/examples COMPONENT programs
+        FILES_MATCHING PATTERN "*.lsys" PATTERN "*.json" PATTERN "*.glb"
+        PATTERN gallery EXCLUDE PATTERN engine EXCLUDE)
+install(DIRECTORY examples/engine DESTINATION ${NEPHELE_DATA}/examples COMPONENT development)
+install(FILES README.md LICENSE DESTINATION ${NEPHELE_DOC} COMPONENT programs)
+install(DIRECTORY docs DESTINATION ${NEPHELE_DOC} COMPONENT programs)

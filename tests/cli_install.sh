@@ -45,7 +45,7 @@ count=0
 for path in "$programs"/neph-*; do
     program=$(basename "$path")
     [ "$("$bin/$program" --version)" = "$("$path" --version)" ] || fail "$program does not start where it was moved to"
-    for page in "$man/$program.1" "$root/share/bash-completion/completions/$program" \
+    for page in "$man/$program.1.gz" "$root/share/bash-completion/completions/$program" \
         "$root/share/zsh/$(cached NEPHELE_ZSH_FOLDER)/_$program"; do
         [ -s "$page" ] || fail "$program: ${page#"$root"/} is missing"
     done
