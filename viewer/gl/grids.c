@@ -5,6 +5,7 @@
 
 #include "gl_private.h"
 #include "shape/bake.h"
+#include "shape/record.h"
 
 static GLuint make_texture(const int size[3], GLint internal, GLenum format, GLenum kind, const void *data)
 {
@@ -111,13 +112,9 @@ shape_status gl_grids_set_light(gl_grids *grids, gl_scene *scene, const shape_vo
     if (status)
         return status;
     for (int i = 0; i < grids->count; i++) {
-        const shape_lightgrid *grid = &light[i];
-        const int *place = grids->light_boxes[i].place;
-        gl_scene_put(scene, i, 8, place[0], place[1], place[2], 0);
-        gl_scene_put(scene, i, 9, grid->size[0], grid->size[1], grid->size[2],
-                     volume->clouds[i].medium.droplet);
-        gl_scene_put(scene, i, 10, grid->box.min.x, grid->box.min.y, grid->box.min.z, 0);
-        gl_scene_put(scene, i, 11, grid->box.max.x, grid->box.max.y, grid->box.max.z, 0);
+        float *record = scene->records + (size_t)i * GL_RECORD_TEXELS * 4;
+        shape_record_set_light((float(*)[4])record, &volume->clouds[i], &light[i],
+                               grids->light_boxes[i].place);
     }
     if (values) {
         grids->light_a = value_texture(grids, 0, error);
