@@ -97,10 +97,19 @@ install(FILES ${CMAKE_BINARY_DIR}/libshape.pc DESTINATION ${CMAKE_INSTALL_LIBDIR
 install(DIRECTORY shaders DESTINATION ${NEPHELE_DATA} COMPONENT development
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.frag" PATTERN "*.vert" PATTERN "*.md")
 
+# --- the page of the C API, made from the headers: cmake --build build/release --target docs
+set(NEPHELE_API ${CMAKE_BINARY_DIR}/docs/api.md)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/docs)
+add_custom_command(OUTPUT ${NEPHELE_API}
+  COMMAND awk -f ${PROJECT_SOURCE_DIR}/docs/api.awk ${SHAPE_HEADERS} > ${NEPHELE_API}
+  DEPENDS docs/api.awk ${SHAPE_HEADERS})
+add_custom_target(docs ALL DEPENDS ${NEPHELE_API})
+install(FILES ${NEPHELE_API} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libshape-dev COMPONENT development)
+
 # --- what to read and to begin with
 install(DIRECTORY examples/ DESTINATION ${NEPHELE_DATA}/examples COMPONENT programs
         FILES_MATCHING PATTERN "*.lsys" PATTERN "*.json" PATTERN "*.glb"
         PATTERN gallery EXCLUDE PATTERN engine EXCLUDE)
 install(DIRECTORY examples/engine DESTINATION ${NEPHELE_DATA}/examples COMPONENT development)
 install(FILES README.md LICENSE DESTINATION ${NEPHELE_DOC} COMPONENT programs)
-install(DIRECTORY docs DESTINATION ${NEPHELE_DOC} COMPONENT programs)
+install(DIRECTORY docs DESTINATION ${NEPHELE_DOC} COMPONENT programs PATTERN "*.awk" EXCLUDE)
