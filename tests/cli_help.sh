@@ -18,7 +18,7 @@ fail()
 not_yet="neph-edit:simplify neph-edit:primitives \
 neph-render:density-gain neph-view:frames"
 
-common="output seed quiet help version"
+common="output seed quiet generate help version"
 medium="model extinction albedo phase g kappa octaves noise-scale edge at"
 picture="size eye target fov sun sun-irradiance sky exposure"
 

@@ -294,7 +294,7 @@ static void record(const cli_option *option, const char *text)
     append(made_by_text, sizeof made_by_text, word);
 }
 
-static const char *argument_name(const cli_option *option)
+const char *cli_argument_name(const cli_option *option)
 {
     static const char *const names[] = {NULL, "X", "N", "N", "X,Y,Z", "X,Y", "A|A..B", "WxH", NULL, "TEXT"};
     return option->choices ? option->choices : names[option->kind];
@@ -307,7 +307,7 @@ static void print_help(const cli_program *program)
         printf("\n%s:\n", group->title);
         for (const cli_option *option = group->options; option->name; option++) {
             char left[160], letter[6] = "";
-            const char *argument = option->kind == CLI_FLAG ? NULL : argument_name(option);
+            const char *argument = cli_argument_name(option);
             if (option->letter)
                 snprintf(letter, sizeof letter, "-%c, ", option->letter);
             snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name, argument ? " " : "",
@@ -323,7 +323,8 @@ static void print_help(const cli_program *program)
     printf("\nExit status: 0 done; 1 the work failed; 2 the command was wrong.\n");
 }
 
-static bool show_help, show_version;
+static bool show_help, show_version, generate_given;
+static int generate_kind;
 
 static int collect(const cli_program *program, const cli_group *own, const cli_option **all)
 {
@@ -348,6 +349,8 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         {"seed", 0, CLI_SEED, &common->seed, 0, 0, "N",
          "64-bit seed of everything that is drawn by chance [1]", &common->seed_given, false},
         {"quiet", 'q', CLI_FLAG, &common->quiet, 0, 0, NULL, "no progress, no summary", NULL, true},
+        {"generate", 0, CLI_CHOICE, &generate_kind, 0, 0, "man|bash|zsh",
+         "print the manual page, or a shell's completion, and end", &generate_given, true},
         {"help", 0, CLI_FLAG, &show_help, 0, 0, NULL, "this text", NULL, true},
         {"version", 0, CLI_FLAG, &show_version, 0, 0, NULL, "the version", NULL, true},
         {0}};
@@ -376,7 +379,7 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
     if (code < -1)
         cli_wrong("%s: %s (see --help)", poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(code));
     be_quiet = common->quiet;
-    if (show_help) {
+    if (show_help || generate_given) {
         cli_group groups[16];
         int used = 0;
         for (const cli_group *group = program->groups; group->title && used < 14; group++)
@@ -385,7 +388,10 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         memset(&groups[used], 0, sizeof groups[used]);
         cli_program whole = *program;
         whole.groups = groups;
-        print_help(&whole);
+        if (show_help)
+            print_help(&whole);
+        else
+            cli_generate(common, &whole, (cli_generate_kind)generate_kind);
         exit(fflush(stdout) ? CLI_FAILED : CLI_DONE);
     }
     if (show_version) {

@@ -46,7 +46,7 @@ typedef struct gl_scene {
     int cloud_count, shown_count;
 } gl_scene;
 
-enum { GL_RECORD_TEXELS = 36 };
+enum { GL_RECORD_TEXELS = 36 }; /* SHAPE_RECORD_TEXELS */
 
 shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_error *error);
 /* Rewrites the records for an eye (each cloud's frame is taken relative to it, in double precision) and uploads them;
