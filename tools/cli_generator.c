@@ -7,20 +7,6 @@
 #include "cli_private.h"
 #include "cli_scene.h"
 
-const cli_generator *const cli_generators[] = {&cli_gauss, &cli_meta, &cli_layer, &cli_lsys, &cli_mesh, NULL};
-
-static size_t most = SIZE_MAX;
-
-size_t cli_generator_limit(size_t own)
-{
-    return own < most ? own : most;
-}
-
-void cli_generator_set_limit(size_t limit)
-{
-    most = limit;
-}
-
 /* --- as a program --- */
 
 void cli_generator_parse(const cli_program *program, const cli_generator *generator, const cli_option *more,

@@ -11,6 +11,8 @@ extern const cli_option cli_scene_options[];
 /* --allow-outside alone. */
 extern const cli_option cli_outside_options[];
 
+/* Whether --allow-outside was given. */
+bool cli_outside_allowed(void);
 /* Ends the program, exit 2, where --save-scene cannot be done with these arguments. */
 void cli_save_check(const cli_common *common);
 bool cli_save_wanted(void);
