@@ -58,7 +58,7 @@ static char **build_arguments(const char *program, const char *input, const shap
 static int run(const char *program, char **arguments, FILE *out, FILE *err)
 {
     posix_spawn_file_actions_t actions;
-    pid_t child;
+    pid_t child = -1;
     int status = -1;
     if (posix_spawn_file_actions_init(&actions))
         cli_fail("not enough memory");
