@@ -4,6 +4,39 @@
 
 #include "cli.h"
 
+enum { CLI_MAX_OPTIONS = 160 };
+
+/* An option that was given, and its text, NULL for a flag; both live as long as the record. */
+typedef struct cli_recorded {
+    const cli_option *option;
+    const char *text;
+} cli_recorded;
+
+/* What a command line said and read. */
+typedef struct cli_record {
+    const char *program;
+    cli_recorded options[CLI_MAX_OPTIONS];
+    int count;
+    char inputs[2048]; /* " name sha256:..." for each input */
+} cli_record;
+
+/* Empties the record and names its program. */
+void cli_record_start(const char *program);
+void cli_record_option(const cli_option *option, const char *text);
+/* The record in use, and another to use instead; returns the former. */
+const cli_record *cli_record_now(void);
+cli_record *cli_record_use(cli_record *record);
+
+/* Puts an option's text into its variable, or ends the program: cli_wrong. text is "" for a flag, and must live as long
+ * as the variable where that is a text. */
+void cli_store(const cli_option *option, const char *text);
+
+/* Stands before every error from now on, "sky.json: clouds[2]: ", and makes what would be a wrong command a failure: the
+ * mistake is in a file. "" ends it. */
+void cli_set_place(const char *format, ...) SHAPE_PRINTF(1, 2);
+/* Switches summaries and progress; returns what was before. */
+bool cli_set_quiet(bool quiet);
+
 /* Adds a word to the inputs named in the provenance line. */
 void cli_append_input(const char *word);
 

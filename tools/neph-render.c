@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "cli_scene.h"
 #include "shape/file.h"
 #include "shape/image.h"
 #include "shape/imageerror.h"
@@ -18,9 +19,8 @@ enum { MAX_IMAGE_FILE = 0x7fffffff };
 
 static int method, rule = SHAPE_RULE_EXPONENTIAL, lighting = SHAPE_MARCH_GRID;
 static int64_t samples = 64, max_bounces = 4096, steps = 100, light_steps = 50, light_resolution = 48;
-static double growth = 1, noise, sun_angle = 0.53, lamp[3], lamp_intensity[3] = {10, 10, 10}, tolerance;
-static bool jitter, stats, compare, samples_given, noise_given, lamp_given, tolerance_given, march_given,
-    bounces_given, angle_given;
+static double growth = 1, noise, tolerance;
+static bool jitter, stats, compare, samples_given, noise_given, tolerance_given, march_given, bounces_given;
 
 static const cli_option render_options[] = {
     {"method", 0, CLI_CHOICE, &method, 0, 0, "reference|march",
@@ -32,13 +32,14 @@ static const cli_option render_options[] = {
     {"noise", 0, CLI_NUMBER, &noise, 1e-6, 10, "T", "stop at this relative error of the picture [off]",
      &noise_given, false},
     {"max-bounces", 0, CLI_INTEGER, &max_bounces, 0, 1 << 20, "N", "collisions that a path may have [4096]",
-     NULL, false},
-    {"sun-angle", 0, CLI_NUMBER, &sun_angle, 0, 90, "DEGREES", "the sun's diameter; 0: a direction [0.53]",
-     NULL, false},
-    {"lamp", 0, CLI_VECTOR, lamp, -1e12, 1e12, "X,Y,Z", "a lamp stands there, metres [none]", &lamp_given,
+     &bounces_given, false},
+    {"sun-angle", 0, CLI_NUMBER, &cli_picture_values.sun_angle, 0, 90, "DEGREES",
+     "the sun's diameter; 0: a direction [0.53]", &cli_picture_values.sun_angle_given, false},
+    {"lamp", 0, CLI_VECTOR, cli_picture_values.lamp, -1e12, 1e12, "X,Y,Z",
+     "a lamp stands there, metres [none]", &cli_picture_values.lamp_given, false},
+    {"lamp-intensity", 0, CLI_VECTOR, cli_picture_values.lamp_intensity, 0, 1e18, "R,G,B",
+     "of the lamp: irradiance times distance squared [10,10,10]", &cli_picture_values.lamp_intensity_given,
      false},
-    {"lamp-intensity", 0, CLI_VECTOR, lamp_intensity, 0, 1e18, "R,G,B",
-     "of the lamp: irradiance times distance squared [10,10,10]", NULL, false},
     {"stats", 0, CLI_FLAG, &stats, 0, 0, NULL, "JSON about the picture on standard output (needs -o)", NULL,
      true},
     {0}};
@@ -72,13 +73,14 @@ static const cli_group groups[] = {{"Picture", cli_picture_options},
                                    {"Rendering", render_options},
                                    {"Marching (--method march)", march_options},
                                    {"Comparing", compare_options},
+                                   {"Scene", cli_scene_options},
                                    {0}};
 
 static const cli_program program = {.name = "neph-render",
-                                    .arguments = "IN.neph | --compare A B",
-                                    .about = "Renders clouds on the CPU to PNG (tone-mapped), EXR or PFM "
-                                             "(linear radiance). An EXR also holds the\n"
-                                             "variance of each pixel.",
+                                    .arguments = "IN | --compare A B",
+                                    .about = "Renders a .neph or a scene (docs/scene.md) on the CPU to PNG "
+                                             "(tone-mapped), EXR or PFM (linear\n"
+                                             "radiance). An EXR also holds the variance of each pixel.",
                                     .examples =
                                         "  neph-render cloud.neph -o cloud.png --spp 256\n"
                                         "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
@@ -144,14 +146,15 @@ static shape_pathtrace_options pathtrace_options(const cli_common *common)
     options.samples = (int)samples;
     options.max_bounces = (int)max_bounces;
     options.seed = common->seed;
-    options.sun_angle = sun_angle;
+    const cli_picture *v = &cli_picture_values;
+    options.sun_angle = v->sun_angle;
     if (noise_given) {
         options.noise = noise;
         options.samples = samples_given ? (int)samples : 1 << 16;
     }
-    options.lamp.position = shape_dvec3_make(lamp[0], lamp[1], lamp[2]);
-    for (int c = 0; c < 3 && lamp_given; c++)
-        options.lamp.intensity[c] = (float)lamp_intensity[c];
+    options.lamp.position = shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]);
+    for (int c = 0; c < 3 && v->lamp_given; c++)
+        options.lamp.intensity[c] = (float)v->lamp_intensity[c];
     options.progress = show_progress;
     return options;
 }
@@ -244,12 +247,25 @@ static void check_command(const cli_common *common)
         cli_wrong("--tolerance belongs to --compare");
     if (method == 0 && march_given)
         cli_wrong("--rule, --steps, --growth, --jitter and the light options belong to --method march");
-    if (method == 1 && (noise_given || lamp_given || bounces_given || angle_given))
+    if (method == 1 &&
+        (noise_given || cli_picture_values.lamp_given || bounces_given || cli_picture_values.sun_angle_given))
         cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
     if (jitter && rule != SHAPE_RULE_EXPONENTIAL)
         cli_wrong("--jitter goes with --rule exponential only");
     if (method == 1 && samples_given && samples > 4096)
         cli_wrong("--spp %d: --method march takes at most 4096", (int)samples);
+}
+
+/* Camera and light of a scene; what this method leaves out of them is said. */
+static void use_scene(const cli_input *input)
+{
+    if (!input->scene)
+        return;
+    cli_picture_use_scene(input->scene);
+    if (method == 1 && input->scene->lamp_given)
+        cli_say("note: --method march does not show the scene's lamp (--method reference does)");
+    if (method == 1 && input->scene->sun_angle_given && input->scene->sun_angle > 0)
+        cli_say("note: --method march takes the sun as a direction, not a disc (--method reference has it)");
 }
 
 static void render(const cli_common *common)
@@ -260,7 +276,10 @@ static void render(const cli_common *common)
     shape_volume *volume;
     check_command(common);
     shape_image_format format = choose_format(common);
-    shape_set *set = cli_read_set(common->arguments[0]);
+    cli_save_check(common);
+    cli_input input = cli_input_read(common->arguments[0]);
+    const shape_set *set = input.set;
+    use_scene(&input);
     cli_picture_apply(set, &view, &light);
     shape_image *image = make_image(&view, format);
     double start = seconds();
@@ -274,7 +293,8 @@ static void render(const cli_common *common)
     report(&outcome, image, seconds() - start);
     shape_image_destroy(image);
     shape_volume_destroy(volume);
-    shape_set_destroy(set);
+    cli_picture_save_scene(&input, &view, &light);
+    cli_input_free(&input);
 }
 
 /* --- comparing --- */

@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "cli_scene.h"
 #include "shape/image.h"
 #include "view.h"
 
@@ -33,13 +34,16 @@ static const cli_option view_options[] = {
      "read the shaders from here, not the built-in ones", NULL, true},
     {0}};
 
-static const cli_group groups[] = {{"View", view_options}, {"Picture", cli_picture_options}, {0}};
+static const cli_group groups[] = {
+    {"View", view_options}, {"Picture", cli_picture_options}, {"Scene", cli_scene_options}, {0}};
 
 static const cli_program program = {
     .name = "neph-view",
-    .arguments = "CLOUD.neph",
+    .arguments = "IN",
     .about =
-        "Shows a cloud in a window, or writes a picture of it without one. \"-\" reads standard input.\n"
+        "Shows a .neph or a scene (docs/scene.md) in a window, or writes a picture of it without one. \"-\" "
+        "reads\n"
+        "standard input. --save-scene writes what the window shows when it is closed.\n"
         "In the window: drag to turn, right drag to look round, wheel to come nearer, W A S D E Q to fly,\n"
         "+ and - for the exposure, Home for the first view, H for help, Esc to quit.",
     .examples = "  neph-view castellanus.neph\n"
@@ -203,16 +207,22 @@ int main(int argc, char **argv)
         if (shape_image_format_find(common.output, &format, &error))
             cli_wrong("%s", error.text);
     }
-    shape_set *set = cli_read_set(common.arguments[0]);
-    job.set = set;
-    cli_picture_apply(set, &job.view, &job.light);
-    cli_check(shape_volume_create(set, &job.volume, &error), &error);
+    cli_save_check(&common);
+    cli_input input = cli_input_read(common.arguments[0]);
+    job.set = input.set;
+    if (input.scene)
+        cli_picture_use_scene(input.scene);
+    if (cli_picture_values.lamp_given)
+        cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
+    cli_picture_apply(job.set, &job.view, &job.light);
+    cli_check(shape_volume_create(job.set, &job.volume, &error), &error);
     job.load_ms = now_ms() - started;
     if (headless || bench_given)
         draw_headless(&job, started, &common);
     else
         cli_check(view_window(&job, &error), &error);
     shape_volume_destroy(job.volume);
-    shape_set_destroy(set);
+    cli_picture_save_scene(&input, &job.view, &job.light);
+    cli_input_free(&input);
     return cli_finish(&common);
 }

@@ -178,6 +178,7 @@ shape_status view_window(view_job *job, shape_error *error)
     shape_status status;
     if (window) {
         status = run(window, job, &state, error);
+        job->view.exposure = (float)state.exposure; /* a saved scene looks as the window did */
         glfwDestroyWindow(window);
     } else {
         const char *why = NULL;
