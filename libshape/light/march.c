@@ -6,11 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
 #include "base/memory.h"
+#include "light/rows.h"
 
 /* Beyond that depth nothing is seen: 1e-8. */
 static const double deep_enough = 18.4;
@@ -258,14 +255,23 @@ static shape_status render_pixel(const shape_marcher *m, const shape_view *view,
     return SHAPE_OK;
 }
 
-static shape_status render_row(const shape_marcher *m, const shape_view *view, const shape_camera *camera,
-                               int y, float *out)
+/* A picture being marched. */
+typedef struct march_picture {
+    const shape_marcher *marcher;
+    const shape_view *view;
+    shape_camera camera;
+    float *radiance;
+} march_picture;
+
+static shape_status render_row(void *context, int y)
 {
+    const march_picture *picture = context;
+    float *out = picture->radiance + (size_t)y * (size_t)picture->view->width * 3;
     shape_march_scratch scratch;
     shape_status status = SHAPE_OK;
     memset(&scratch, 0, sizeof scratch);
-    for (int x = 0; x < view->width && !status; x++)
-        status = render_pixel(m, view, camera, x, y, &scratch, out + 3 * x);
+    for (int x = 0; x < picture->view->width && !status; x++)
+        status = render_pixel(picture->marcher, picture->view, &picture->camera, x, y, &scratch, out + 3 * x);
     shape_march_scratch_free(&scratch);
     return status;
 }
@@ -276,35 +282,11 @@ shape_status shape_march_render(const shape_marcher *m, const shape_view *view, 
     shape_status status = shape_view_check(view, error);
     if (status)
         return status;
-    shape_camera camera = shape_view_camera(view);
-    int stop = 0, failed = 0, done = 0;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int y = 0; y < view->height; y++) {
-        int stopped, rows;
-#pragma omp atomic read
-        stopped = stop;
-        if (stopped)
-            continue;
-        if (render_row(m, view, &camera, y, radiance + (size_t)y * (size_t)view->width * 3)) {
-#pragma omp atomic write
-            failed = 1;
-        }
-#pragma omp atomic capture
-        rows = ++done;
-        bool speaks = true;
-#ifdef _OPENMP
-        speaks = omp_get_thread_num() == 0;
-#endif
-        if (speaks && m->options.progress &&
-            !m->options.progress(m->options.progress_context, (double)rows / view->height)) {
-#pragma omp atomic write
-            stop = 1;
-        }
-    }
-    /* The thread that speaks may have had no row at all. */
-    if (!stop && m->options.progress && !m->options.progress(m->options.progress_context, 1))
-        stop = 1;
+    march_picture picture = {m, view, shape_view_camera(view), radiance};
+    rows_progress progress = {m->options.progress, m->options.progress_context, 0, 1};
+    bool stopped;
+    status = rows_share(view->height, render_row, &picture, &progress, &stopped);
     if (cancelled)
-        *cancelled = stop;
-    return failed ? shape_error_memory(error) : SHAPE_OK;
+        *cancelled = stopped;
+    return status ? shape_error_memory(error) : SHAPE_OK;
 }

@@ -5,10 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
-
+#include "light/rows.h"
 #include "light/track.h"
 #include "shape/phase.h"
 
@@ -318,35 +315,17 @@ static void trace_row(const canvas *picture, int y, int samples)
     picture->row_samples[y] = before + samples;
 }
 
-/* One pass over all rows; false where the caller's progress ended it. from and to are the pass's share of the work. */
-static bool trace_pass(const canvas *picture, int samples, const shape_pathtrace_options *options,
-                       double from, double to)
+/* One pass over all rows. */
+typedef struct trace_work {
+    const canvas *picture;
+    int samples;
+} trace_work;
+
+static shape_status work_on_row(void *context, int y)
 {
-    int height = picture->view->height, done = 0, stop = 0;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int y = 0; y < height; y++) {
-        int stopped, rows;
-#pragma omp atomic read
-        stopped = stop;
-        if (stopped)
-            continue;
-        trace_row(picture, y, samples);
-#pragma omp atomic capture
-        rows = ++done;
-        bool speaks = true;
-#ifdef _OPENMP
-        speaks = omp_get_thread_num() == 0;
-#endif
-        if (speaks && options->progress &&
-            !options->progress(options->progress_context, from + (to - from) * rows / height)) {
-#pragma omp atomic write
-            stop = 1;
-        }
-    }
-    /* The thread that speaks may have had no row at all. */
-    if (!stop && options->progress && !options->progress(options->progress_context, to))
-        stop = 1;
-    return !stop;
+    const trace_work *work = context;
+    trace_row(work->picture, y, work->samples);
+    return SHAPE_OK;
 }
 
 static double pixel_variance(const pixel_sums *pixel, int channel, int samples)
@@ -393,9 +372,11 @@ static void trace_picture(const canvas *picture, const shape_pathtrace_options *
 {
     while (result->samples < options->samples && !result->cancelled) {
         int left = options->samples - result->samples, samples = left < PASS_SAMPLES ? left : PASS_SAMPLES;
-        double from = (double)result->samples / options->samples;
-        double to = (double)(result->samples + samples) / options->samples;
-        result->cancelled = !trace_pass(picture, samples, options, from, to);
+        rows_progress progress = {options->progress, options->progress_context,
+                                  (double)result->samples / options->samples,
+                                  (double)(result->samples + samples) / options->samples};
+        trace_work work = {picture, samples};
+        rows_share(picture->view->height, work_on_row, &work, &progress, &result->cancelled);
         if (result->cancelled)
             break;
         result->samples += samples;
