@@ -475,7 +475,7 @@ static shape_status fill_cells(majorant_grid *grid, const found_list *found, sha
 static double wanted_cell(const shape_volume_cloud *cloud)
 {
     double scale = cbrt(fabs(shape_frame_determinant(&cloud->frame)));
-    double size = 0.6 * (double)cloud->field.noise_scale;
+    double size = 1.3 * (double)cloud->field.noise_scale;
     if (cloud->field.model == SHAPE_MODEL_UNIFORM || !(size > 0)) {
         double sides = ((double)cloud->box.max.x - (double)cloud->box.min.x) +
                        ((double)cloud->box.max.y - (double)cloud->box.min.y) +
