@@ -108,6 +108,8 @@ static void find_box(shape_marcher *m)
         m->low = shape_dvec3_make(fmin(m->low.x, a.x), fmin(m->low.y, a.y), fmin(m->low.z, a.z));
         m->high = shape_dvec3_make(fmax(m->high.x, b.x), fmax(m->high.y, b.y), fmax(m->high.z, b.z));
     }
+    if (!(m->low.x <= m->high.x))
+        m->low = m->high = shape_dvec3_make(0, 0, 0);
 }
 
 static void choose_steps(shape_marcher *m)

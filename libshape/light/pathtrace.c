@@ -9,7 +9,8 @@
 #include "light/rows.h"
 #include "shape/phase.h"
 
-enum { PASS_SAMPLES = 16 };
+/* Samples a pixel between two looks at the noise, or at most in one go where nobody looks. */
+enum { PASS_SAMPLES = 16, LONG_PASS = 64 };
 
 shape_status shape_tracer_create(const shape_volume *volume, shape_tracer **tracer, shape_error *error)
 {
@@ -229,7 +230,8 @@ static void trace_picture(const canvas *picture, const shape_pathtrace_options *
                           shape_pathtrace_result *result)
 {
     while (result->samples < options->samples && !result->cancelled) {
-        int left = options->samples - result->samples, samples = left < PASS_SAMPLES ? left : PASS_SAMPLES;
+        int left = options->samples - result->samples, most = options->noise > 0 ? PASS_SAMPLES : LONG_PASS;
+        int samples = left < most ? left : most;
         rows_progress progress = {options->progress, options->progress_context,
                                   (double)result->samples / options->samples,
                                   (double)(result->samples + samples) / options->samples};
