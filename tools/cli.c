@@ -111,7 +111,8 @@ void cli_progress(const char *what, double done)
 
 const char *cli_argument_name(const cli_option *option)
 {
-    static const char *const names[] = {NULL, "X", "N", "N", "X,Y,Z", "X,Y", "A|A..B", "WxH", NULL, "TEXT"};
+    static const char *const names[] = {NULL,     "X",   "N",  "N",    "X,Y,Z", "X,Y",
+                                        "A|A..B", "WxH", NULL, "TEXT", "TEXT"};
     return option->choices ? option->choices : names[option->kind];
 }
 

@@ -23,10 +23,16 @@ typedef enum cli_kind {
     CLI_RANGE,   /* double[2]: A or A..B, in [min, max], A <= B */
     CLI_SIZE,    /* int64_t[2]: WxH, each in [min, max] */
     CLI_CHOICE,  /* int: the place of the word in `choices`, "a|b|c" */
-    CLI_TEXT     /* const char *, as given */
+    CLI_TEXT,    /* const char *, as given */
+    CLI_TEXTS    /* cli_texts: an option that may be given several times, in this order */
 } cli_kind;
 
 enum { CLI_SCENE_ONLY = 2 };
+enum { CLI_TEXTS_MAX = 64 };
+typedef struct cli_texts {
+    const char *text[CLI_TEXTS_MAX]; /* for the program's life */
+    int count;
+} cli_texts;
 
 typedef struct cli_option {
     const char *name; /* long name, without the dashes; NULL ends a table */

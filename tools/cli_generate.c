@@ -115,7 +115,7 @@ static void print_manual(FILE *out, const cli_program *program)
 
 static bool takes_file(const cli_option *option)
 {
-    return option->kind == CLI_TEXT;
+    return option->kind == CLI_TEXT || option->kind == CLI_TEXTS;
 }
 
 static void bash_name(FILE *out, const cli_option *option)

@@ -61,6 +61,8 @@ static size_t size_of_kind(cli_kind kind)
         return 2 * sizeof(int64_t);
     case CLI_CHOICE:
         return sizeof(int);
+    case CLI_TEXTS:
+        return 0; /* no generator has one */
     case CLI_TEXT:
         break;
     }

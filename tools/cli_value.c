@@ -99,6 +99,7 @@ static const char *kind_name(const cli_option *option)
     switch (option->kind) {
     case CLI_FLAG:
     case CLI_TEXT:
+    case CLI_TEXTS:
         break;
     case CLI_NUMBER:
         return "a number";
@@ -129,6 +130,16 @@ static void check_values(const cli_option *option, const char *text, const doubl
             cli_wrong("--%s %s: must be from %.9g to %.9g", option->name, text, option->min, option->max);
 }
 
+static void add_text(const cli_option *option, const char *text)
+{
+    cli_texts *texts = option->value;
+    if (texts->count == CLI_TEXTS_MAX)
+        cli_wrong("--%s: given more than %d times", option->name, (int)CLI_TEXTS_MAX);
+    texts->text[texts->count] = strdup(text); /* the option's own text is gone when it is given again */
+    if (!texts->text[texts->count++])
+        cli_fail("not enough memory");
+}
+
 void cli_store(const cli_option *option, const char *text)
 {
     double values[3];
@@ -141,6 +152,9 @@ void cli_store(const cli_option *option, const char *text)
         break;
     case CLI_TEXT:
         *(const char **)option->value = text;
+        break;
+    case CLI_TEXTS:
+        add_text(option, text);
         break;
     case CLI_CHOICE:
         good = parse_choice(text, option->choices, option->value);
