@@ -1,4 +1,4 @@
-/* neph-render: a .neph to a picture on the CPU, and the comparison of two pictures. */
+/* neph-render: a .neph or a volume to a picture on the CPU, and the comparison of two pictures. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "cli_volume.h"
 #include "shape/file.h"
 #include "shape/image.h"
 #include "shape/imageerror.h"
@@ -69,24 +70,27 @@ static const cli_option compare_options[] = {
     {0}};
 
 static const cli_group groups[] = {{"Picture", cli_picture_options},
+                                   {"Volumes (.vdb, raw)", cli_volume_options},
+                                   {"Medium and place of volumes", cli_optics_options},
                                    {"Rendering", render_options},
                                    {"Marching (--method march)", march_options},
                                    {"Comparing", compare_options},
                                    {0}};
 
-static const cli_program program = {.name = "neph-render",
-                                    .arguments = "IN.neph | --compare A B",
-                                    .about = "Renders clouds on the CPU to PNG (tone-mapped), EXR or PFM "
-                                             "(linear radiance). An EXR also holds the\n"
-                                             "variance of each pixel.",
-                                    .examples =
-                                        "  neph-render cloud.neph -o cloud.png --spp 256\n"
-                                        "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
-                                        "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
-                                        "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
-                                    .min_arguments = 1,
-                                    .max_arguments = 2,
-                                    .groups = groups};
+static const cli_program program = {
+    .name = "neph-render",
+    .arguments = "IN.neph | IN.vdb | IN.raw | --compare A B",
+    .about = "Renders clouds on the CPU to PNG (tone-mapped), EXR or PFM "
+             "(linear radiance). An EXR also holds the\n"
+             "variance of each pixel.",
+    .examples = "  neph-render cloud.neph -o cloud.png --spp 256\n"
+                "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
+                "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
+                "  neph-render smoke.vdb -o smoke.png --density-gain 3 --extinction 0.5\n"
+                "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
+    .min_arguments = 1,
+    .max_arguments = 2,
+    .groups = groups};
 
 static double seconds(void)
 {
@@ -260,7 +264,10 @@ static void render(const cli_common *common)
     shape_volume *volume;
     check_command(common);
     shape_image_format format = choose_format(common);
-    shape_set *set = cli_read_set(common->arguments[0]);
+    bool is_volume = cli_is_volume(common->arguments[0]);
+    if (!is_volume)
+        cli_refuse_volume_options();
+    shape_set *set = is_volume ? cli_read_volume(common->arguments[0]) : cli_read_set(common->arguments[0]);
     cli_picture_apply(set, &view, &light);
     shape_image *image = make_image(&view, format);
     double start = seconds();

@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "cli_volume.h"
 #include "shape/image.h"
 #include "view.h"
 
@@ -33,11 +34,15 @@ static const cli_option view_options[] = {
      "read the shaders from here, not the built-in ones", NULL, true},
     {0}};
 
-static const cli_group groups[] = {{"View", view_options}, {"Picture", cli_picture_options}, {0}};
+static const cli_group groups[] = {{"View", view_options},
+                                   {"Picture", cli_picture_options},
+                                   {"Volumes (.vdb, raw)", cli_volume_options},
+                                   {"Medium and place of volumes", cli_optics_options},
+                                   {0}};
 
 static const cli_program program = {
     .name = "neph-view",
-    .arguments = "CLOUD.neph",
+    .arguments = "CLOUD.neph | VOLUME.vdb | VOLUME.raw",
     .about =
         "Shows a cloud in a window, or writes a picture of it without one. \"-\" reads standard input.\n"
         "In the window: drag to turn, right drag to look round, wheel to come nearer, W A S D E Q to fly,\n"
@@ -202,7 +207,10 @@ int main(int argc, char **argv)
         if (shape_image_format_find(common.output, &format, &error))
             cli_wrong("%s", error.text);
     }
-    shape_set *set = cli_read_set(common.arguments[0]);
+    bool is_volume = cli_is_volume(common.arguments[0]);
+    if (!is_volume)
+        cli_refuse_volume_options();
+    shape_set *set = is_volume ? cli_read_volume(common.arguments[0]) : cli_read_set(common.arguments[0]);
     job.set = set;
     cli_picture_apply(set, &job.view, &job.light);
     cli_check(shape_volume_create(set, &job.volume, &error), &error);

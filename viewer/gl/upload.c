@@ -186,7 +186,8 @@ static void fill_record(const gl_scene *scene, const shape_volume *volume, size_
     double scale = cbrt(fabs(shape_frame_determinant(&c->frame)));
     float share, rest, mean = shape_phase_mean_cosine(&c->medium);
     shape_delta_scaling(mean, &share, &rest);
-    put(record + 12, c->box.min.x, c->box.min.y, c->box.min.z, c->medium.extinction);
+    put(record + 12, c->box.min.x, c->box.min.y, c->box.min.z,
+        (double)c->medium.extinction * (double)c->most); /* baked densities are in units of the largest */
     put(record + 16, c->box.max.x, c->box.max.y, c->box.max.z, (double)root);
     put(record + 20, c->field.kappa, c->field.octaves, c->inverse_noise_scale, c->field.model);
     put(record + 24, (double)scene->list_spheres[i], (double)scene->list_ellipsoids[i],
