@@ -99,6 +99,8 @@ void load(const char *path, const shape_vdb_read_options &options, Message &mess
     } catch (...) {
         shape_error_set(error, SHAPE_ERROR_FORMAT, "OpenVDB cannot read it");
     }
+    for (char *c = error->text; error->status && *c; c++) // names in a damaged file may hold anything
+        *c = static_cast<unsigned char>(*c) < 0x20 || *c == 0x7f ? '?' : *c;
 }
 
 [[noreturn]] void be_the_reader(const char *path, const shape_vdb_read_options &options, int to)

@@ -220,8 +220,9 @@ static void measure_cover(fit_union *u)
             }
 }
 
-/* Error and overlap for densities (per cell) that are to keep the sum of extinction; *extinction is what does. */
-static void compare(const fit_lattice *l, const float *density, shape_volumefit_report *report,
+/* Error and overlap for densities (per cell) that are to keep the sum of extinction; *extinction is what does. Plain
+ * densities are shares of cells; others count by their extinction, as the volume does. */
+static void compare(const fit_lattice *l, const float *density, bool plain, shape_volumefit_report *report,
                     double *extinction)
 {
     double mass = 0, sum = 0, squares = 0, cells = 0, both = 0, either = 0;
@@ -236,7 +237,8 @@ static void compare(const fit_lattice *l, const float *density, shape_volumefit_
             squares += miss * miss;
             cells++;
         }
-        double a = (double)density[i], b = (double)l->target[i];
+        double share = plain ? 1 : *extinction / l->level;
+        double a = fmin((double)density[i] * share, 1), b = (double)l->target[i];
         both += fmin(a, b);
         either += fmax(a, b);
     }
@@ -293,7 +295,7 @@ static shape_status put_all(const fit_union *u, double grow, shape_primitives *l
     return status;
 }
 
-/* Densities of the set's cloud in the lattice's cells, at two places each. */
+/* Densities of the set's cloud in the lattice's cells, at eight places each. */
 static shape_status sample_cloud(const shape_set *set, size_t cloud, const fit_lattice *l, float *density,
                                  shape_error *error)
 {
@@ -337,7 +339,7 @@ static shape_status choose_growth(fit_job *job, shape_set *set, size_t cloud, sh
             status = sample_cloud(set, cloud, job->u.lattice, job->u.left, error);
         if (status)
             break;
-        compare(job->u.lattice, job->u.left, report, &extinction);
+        compare(job->u.lattice, job->u.left, false, report, &extinction);
         set->clouds[cloud].medium.extinction = (float)extinction;
         if (report->error < best) {
             best = report->error;
@@ -365,7 +367,7 @@ static shape_status put_cloud(fit_job *job, const shape_medium *medium, shape_se
         status = choose_growth(job, set, *index, report, error);
     } else {
         measure_cover(&job->u);
-        compare(l, job->u.left, report, &extinction);
+        compare(l, job->u.left, true, report, &extinction);
         cloud->medium.extinction = (float)extinction;
         status = put_all(&job->u, 1, shape_set_list(set, *index), error);
         if (!status)
@@ -392,7 +394,7 @@ static shape_status fit(fit_job *job, shape_volumefit_report *report, shape_erro
             break;
         fit_union_fill(&job->u);
         measure_cover(&job->u);
-        compare(job->u.lattice, job->u.left, report, &unused);
+        compare(job->u.lattice, job->u.left, true, report, &unused);
         if (report->error <= o->error || count == o->primitives || job->u.count < count)
             break;
         count = count + (count + 1) / 2 < o->primitives ? count + (count + 1) / 2 : o->primitives;

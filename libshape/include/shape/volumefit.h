@@ -28,9 +28,10 @@ typedef struct shape_volumefit_report {
     size_t primitives;
     double
         level; /* extinction that the solid part has on average [1/m]; solid is what has more than half of it */
-    double error;   /* RMSE of extinction over the cells in which either is above 0, in units of level */
-    double overlap; /* of solid part and primitives: intersection over union, 0 to 1 */
-    double cell;    /* edge of a cell [m] */
+    double error; /* RMSE of extinction over the cells in which either is above 0, in units of level */
+    double
+        overlap; /* intersection over union of the volume and the primitives, both as shares of level up to 1 */
+    double cell; /* edge of a cell [m] */
     int cells[3];
     bool reached; /* `error` was met, or not asked for */
 } shape_volumefit_report;
