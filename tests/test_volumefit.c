@@ -89,7 +89,7 @@ static void heap_of_spheres_comes_back(void **state)
     new_cloud(set, SHAPE_MODEL_UNIFORM);
     shape_gaussian options = shape_gaussian_defaults();
     must(shape_gaussian_make(&options, 1, shape_set_list(set, 0), NULL, &error), &error);
-    double found = round_trip(set, 56, 90, &report);
+    double found = round_trip(set, 52, 80, &report);
     if (!(found >= 0.95))
         fail_msg("overlap %.4f of %zu primitives", found, report.primitives);
     /* The fit's own figure agrees, but for its coarser cells. */
@@ -107,7 +107,7 @@ static void rotated_ellipsoids_come_back(void **state)
     for (int i = 0; i < 5; i++)
         add_ellipsoid(set, 0, draw_point(&random, 2), draw_size(&random, 0.6, 2), draw_size(&random, 0.6, 2),
                       draw_size(&random, 0.6, 2), draw_rotation(&random));
-    double found = round_trip(set, 48, 120, &report);
+    double found = round_trip(set, 44, 100, &report);
     if (!(found >= 0.95))
         fail_msg("overlap %.4f of %zu primitives", found, report.primitives);
     shape_set_destroy(set);
@@ -133,7 +133,7 @@ static void tower_of_puffs_comes_back(void **state)
         at[i] = shape_vec3_add(at[from], shape_vec3_scale(d, (float)(1.1 * radius[from])));
         add_sphere(set, 0, (double)at[i].x, (double)at[i].y, (double)at[i].z, radius[i]);
     }
-    double found = round_trip(set, 64, 90, &report);
+    double found = round_trip(set, 60, 80, &report);
     if (!(found >= 0.95))
         fail_msg("overlap %.4f of %zu primitives", found, report.primitives);
     shape_set_destroy(set);

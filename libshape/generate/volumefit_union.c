@@ -34,7 +34,6 @@ static double invert(const double *m, double inverse[9])
     return det;
 }
 
-/* A bound of |m| as a map: its largest stretch, 1 / the smallest semi-axis at most. */
 static double frobenius(const double *m)
 {
     double sum = 0;
@@ -43,11 +42,23 @@ static double frobenius(const double *m)
     return sqrt(sum);
 }
 
+/* A bound of the largest stretch of m, which is 1 / the smallest semi-axis: the lesser of two norms (Golub and Van Loan,
+ * Matrix Computations, 2.3). */
+static double largest_stretch(const double *m)
+{
+    double rows = 0, columns = 0;
+    for (int i = 0; i < 3; i++) {
+        rows = fmax(rows, fabs(m[3 * i]) + fabs(m[3 * i + 1]) + fabs(m[3 * i + 2]));
+        columns = fmax(columns, fabs(m[i]) + fabs(m[3 + i]) + fabs(m[6 + i]));
+    }
+    return fmin(frobenius(m), sqrt(rows * columns)) * (1 + 1e-9);
+}
+
 static void prepare(fit_primitive *p, const fit_lattice *lattice, double width)
 {
-    double inverse[9], det = invert(p->value + 3, inverse), stretch = frobenius(p->value + 3);
+    double inverse[9], det = invert(p->value + 3, inverse), stretch = largest_stretch(p->value + 3);
     p->radius = cbrt(1 / fabs(det));
-    double inner = fmax(1 - 2 * width * stretch, 0), outer = 1 + 2 * width * stretch;
+    double inner = fmax(1 - width * stretch, 0), outer = 1 + width * stretch;
     p->inner2 = inner * inner;
     p->outer2 = outer * outer;
     for (int a = 0; a < 3; a++) {
@@ -121,29 +132,36 @@ static inline size_t cell_index(const fit_lattice *l, int x, int y, int z)
     return ((size_t)z * (size_t)l->n[1] + (size_t)y) * (size_t)l->n[0] + (size_t)x;
 }
 
+static void fill_row(fit_union *u, const fit_primitive *p, int y, int z)
+{
+    int from, to, in_from, in_to;
+    crossing c;
+    if (!row_span(p, p->outer2, y, z, &from, &to))
+        return;
+    if (!row_span(p, p->inner2, y, z, &in_from, &in_to))
+        in_from = in_to = to;
+    float *row = &u->left[cell_index(u->lattice, 0, y, z)];
+    for (int x = from; x <= to; x++) {
+        bool inside = x > in_from && x < in_to;
+        if (!inside)
+            cross(p, u->width, x + 0.5, y + 0.5, z + 0.5, &c);
+        if (inside || c.q > 0)
+            row[x] = fmaxf(row[x] * (float)(inside ? least_left : left_of(&c)), 1e-30f);
+    }
+}
+
 static void fill_slice(fit_union *u, int z)
 {
     const fit_lattice *l = u->lattice;
     size_t first = cell_index(l, 0, 0, z), size = (size_t)l->n[0] * (size_t)l->n[1];
-    crossing c;
     for (size_t i = 0; i < size; i++)
         u->left[first + i] = 1;
     for (size_t i = 0; i < u->count; i++) {
         const fit_primitive *p = &u->items[i];
         if (z < p->low[2] || z > p->high[2])
             continue;
-        for (int y = p->low[1]; y <= p->high[1]; y++) {
-            int from, to;
-            if (!row_span(p, p->outer2, y, z, &from, &to))
-                continue;
-            for (int x = from; x <= to; x++) {
-                cross(p, u->width, x + 0.5, y + 0.5, z + 0.5, &c);
-                if (c.q > 0) {
-                    float *left = &u->left[cell_index(l, x, y, z)];
-                    *left = fmaxf(*left * (float)left_of(&c), 1e-30f);
-                }
-            }
-        }
+        for (int y = p->low[1]; y <= p->high[1]; y++)
+            fill_row(u, p, y, z);
     }
 }
 
