@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli_volume.h"
-#include "shape/grid.h"
+#include "shape/file.h"
 #include "shape/march.h"
 #include "shape/neph.h"
 #include "shape/volumefit.h"
@@ -137,6 +137,17 @@ static void report(const cli_common *common, const char *path, const shape_set *
                     : "--primitives allows more");
 }
 
+/* For the cloud's provenance. */
+static void note_file(const char *path)
+{
+    shape_error error;
+    unsigned char *bytes;
+    size_t size;
+    cli_check(shape_file_read(path, (size_t)cli_volume_values.max_memory, &bytes, &size, &error), &error);
+    cli_note_input(path, bytes, size);
+    free(bytes);
+}
+
 void cli_vdb_fit(const cli_common *common, const char *path)
 {
     shape_error error;
@@ -154,6 +165,7 @@ void cli_vdb_fit(const cli_common *common, const char *path)
         cli_fail("%s: %s", path, error.text);
     shape_volume_destroy(volume);
     cli_progress("fitting", 1);
+    note_file(path);
     cli_made_by(fit->clouds[cloud].made_by);
     fit->clouds[cloud].seed = fit->clouds[cloud].field.seed = common->seed;
     cli_write_set(common, fit);

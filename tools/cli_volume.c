@@ -5,9 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "shape/file.h"
 #include "shape/grid.h"
+#include "shape/neph.h"
 #include "shape/vdb_read.h"
 
 enum { UP_Y, UP_Z };
@@ -78,58 +80,125 @@ static shape_frame raw_frame(const shape_grid *grid)
     return frame;
 }
 
-static shape_grid *read_raw(const char *path, shape_frame *frame)
+static shape_grid *decode_raw(const char *shown, const void *bytes, size_t size, shape_frame *frame)
 {
     shape_error error;
-    unsigned char *bytes;
-    size_t size, most = (size_t)cli_volume_values.max_memory;
     shape_grid *grid;
     if (cli_volume_values.grid_given)
-        cli_fail("%s: a raw volume has no grids to choose from with --grid", path);
-    cli_check(shape_file_read(path, most, &bytes, &size, &error), &error);
-    cli_check(shape_volume_raw_decode(path, bytes, size, most, &grid, &error), &error);
-    free(bytes);
+        cli_fail("%s: a raw volume has no grids to choose from with --grid", shown);
+    cli_check(
+        shape_volume_raw_decode(shown, bytes, size, (size_t)cli_volume_values.max_memory, &grid, &error),
+        &error);
     *frame = raw_frame(grid);
-    cli_say("%s: %d x %d x %d voxels of %g m", path, grid->points[0] - 2, grid->points[1] - 2,
+    cli_say("%s: %d x %d x %d voxels of %g m", shown, grid->points[0] - 2, grid->points[1] - 2,
             grid->points[2] - 2, cli_volume_values.voxel_size);
     return grid;
 }
 
-static shape_grid *read_vdb(const char *path, shape_frame *frame)
+static shape_grid *read_vdb(const char *path, const char *shown, shape_frame *frame)
 {
     shape_error error;
     shape_vdb_contents contents;
     shape_vdb_read_options options = shape_vdb_read_defaults();
     if (cli_volume_values.voxel_size_given)
-        cli_fail("%s: an OpenVDB file has a voxel size of its own (leave --voxel-size out)", path);
+        cli_fail("%s: an OpenVDB file has a voxel size of its own (leave --voxel-size out)", shown);
     options.grid = cli_volume_values.grid;
     options.max_bytes = (size_t)cli_volume_values.max_memory;
     options.y_up = cli_volume_values.up == UP_Y;
-    cli_check(shape_vdb_read(path, &options, &contents, &error), &error);
+    options.shown = shown;
+    shape_status status = shape_vdb_read(path, &options, &contents, &error);
+    if (path != shown)
+        unlink(path); /* a copy of ours */
+    cli_check(status, &error);
     *frame = contents.frame;
-    cli_say("%s: grid \"%s\"%s, %d x %d x %d voxels, the densest %g", path, contents.name,
+    cli_say("%s: grid \"%s\"%s, %d x %d x %d voxels, the densest %g", shown, contents.name,
             contents.level_set ? " (a level set, filled)" : "", contents.grid->points[0] - 2,
             contents.grid->points[1] - 2, contents.grid->points[2] - 2, (double)contents.grid->most);
     return contents.grid;
+}
+
+static shape_set *make_set(const char *shown, shape_grid *grid, const shape_frame *frame)
+{
+    shape_error error;
+    size_t index;
+    char name[SHAPE_NAME_MAX + 1];
+    cli_bare_name(shown, "volume", name);
+    grid->gain = (float)cli_volume_values.density_gain;
+    shape_set *set = shape_set_create(&error);
+    if (!set)
+        cli_fail("%s", error.text);
+    cli_check(shape_set_add_grid(set, name, grid, frame, &index, &error), &error);
+    cli_medium_apply(&set->clouds[index]);
+    cli_check(shape_set_check(set, &error), &error);
+    return set;
 }
 
 shape_set *cli_read_volume(const char *path)
 {
     shape_error error;
     shape_frame frame;
-    unsigned char bytes[16];
-    size_t whole, size = read_start(path, bytes, sizeof bytes, &whole), index;
-    bool vdb = shape_vdb_is(bytes, size) || (has_suffix(path, ".vdb"));
-    shape_grid *grid = vdb ? read_vdb(path, &frame) : read_raw(path, &frame);
-    char name[SHAPE_NAME_MAX + 1];
-    cli_bare_name(path, "volume", name);
-    grid->gain = (float)cli_volume_values.density_gain;
-    shape_set *set = shape_set_create(&error);
-    if (!set)
-        cli_fail("%s", error.text);
-    cli_check(shape_set_add_grid(set, name, grid, &frame, &index, &error), &error);
-    cli_medium_apply(&set->clouds[index]);
-    cli_check(shape_set_check(set, &error), &error);
+    unsigned char start[16], *bytes;
+    size_t whole, size = read_start(path, start, sizeof start, &whole);
+    if (shape_vdb_is(start, size) || has_suffix(path, ".vdb"))
+        return make_set(path, read_vdb(path, path, &frame), &frame);
+    cli_check(shape_file_read(path, (size_t)cli_volume_values.max_memory, &bytes, &size, &error), &error);
+    shape_grid *grid = decode_raw(path, bytes, size, &frame);
+    free(bytes);
+    return make_set(path, grid, &frame);
+}
+
+/* OpenVDB wants a file. */
+static void write_copy(char *path, const void *bytes, size_t size)
+{
+    const char *folder = getenv("TMPDIR");
+    snprintf(path, 4096, "%s/nephele-XXXXXX", folder && *folder ? folder : "/tmp");
+    int file = mkstemp(path);
+    FILE *copy = file >= 0 ? fdopen(file, "wb") : NULL;
+    if (!copy || fwrite(bytes, 1, size, copy) != size || fclose(copy)) {
+        if (file >= 0)
+            unlink(path);
+        cli_fail("%s: cannot write a copy of the input there", path);
+    }
+}
+
+bool cli_is_volume_bytes(const void *bytes, size_t size)
+{
+    return shape_vdb_is(bytes, size) || shape_volume_raw_is(bytes, size);
+}
+
+shape_set *cli_read_volume_bytes(const char *shown, const void *bytes, size_t size)
+{
+    shape_frame frame;
+    char path[4096];
+    shape_grid *grid;
+    if (shape_vdb_is(bytes, size)) {
+        write_copy(path, bytes, size);
+        grid = read_vdb(path, shown, &frame);
+    } else {
+        grid = decode_raw(shown, bytes, size, &frame);
+    }
+    return make_set(shown, grid, &frame);
+}
+
+shape_set *cli_read_set_or_volume(const char *path)
+{
+    shape_error error;
+    unsigned char *bytes;
+    size_t size;
+    shape_set *set;
+    if (cli_is_volume(path))
+        return cli_read_volume(path);
+    cli_check(shape_file_read(path, (size_t)cli_volume_values.max_memory, &bytes, &size, &error), &error);
+    const char *shown = strcmp(path, "-") ? path : "standard input";
+    if (cli_is_volume_bytes(bytes, size)) {
+        set = cli_read_volume_bytes(shown, bytes, size);
+    } else {
+        cli_refuse_volume_options();
+        if (shape_neph_decode(bytes, size, &set, &error))
+            cli_fail("%s: %s", shown, error.text);
+    }
+    cli_note_input(path, bytes, size);
+    free(bytes);
     return set;
 }
 

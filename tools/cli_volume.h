@@ -16,10 +16,15 @@ extern cli_volume cli_volume_values;
  * volumes". */
 extern const cli_option cli_volume_options[];
 
-/* Whether an input is a volume: by its suffix (.vdb, .raw), else by what it begins with. Not for "-". */
+/* Whether a file is a volume: by its suffix (.vdb, .raw), else by what it begins with. Not for "-". */
 bool cli_is_volume(const char *path);
+bool cli_is_volume_bytes(const void *bytes, size_t size);
 /* Reads one by the options; exits 1 with one line where it cannot. The caller destroys the set. */
 shape_set *cli_read_volume(const char *path);
+/* The same from memory; shown is what errors call it. */
+shape_set *cli_read_volume_bytes(const char *shown, const void *bytes, size_t size);
+/* A .neph or a volume, from a file or "-". Options of volumes with a .neph: exit 2. */
+shape_set *cli_read_set_or_volume(const char *path);
 /* For other inputs: exit 2 where an option was given that belongs to volumes. */
 void cli_refuse_volume_options(void);
 

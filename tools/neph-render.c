@@ -264,10 +264,7 @@ static void render(const cli_common *common)
     shape_volume *volume;
     check_command(common);
     shape_image_format format = choose_format(common);
-    bool is_volume = cli_is_volume(common->arguments[0]);
-    if (!is_volume)
-        cli_refuse_volume_options();
-    shape_set *set = is_volume ? cli_read_volume(common->arguments[0]) : cli_read_set(common->arguments[0]);
+    shape_set *set = cli_read_set_or_volume(common->arguments[0]);
     cli_picture_apply(set, &view, &light);
     shape_image *image = make_image(&view, format);
     double start = seconds();

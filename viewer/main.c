@@ -207,10 +207,7 @@ int main(int argc, char **argv)
         if (shape_image_format_find(common.output, &format, &error))
             cli_wrong("%s", error.text);
     }
-    bool is_volume = cli_is_volume(common.arguments[0]);
-    if (!is_volume)
-        cli_refuse_volume_options();
-    shape_set *set = is_volume ? cli_read_volume(common.arguments[0]) : cli_read_set(common.arguments[0]);
+    shape_set *set = cli_read_set_or_volume(common.arguments[0]);
     job.set = set;
     cli_picture_apply(set, &job.view, &job.light);
     cli_check(shape_volume_create(set, &job.volume, &error), &error);

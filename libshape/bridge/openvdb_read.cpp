@@ -212,19 +212,19 @@ shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_con
     return SHAPE_OK;
 }
 
-shape_status read_apart(const char *path, const shape_vdb_read_options *options, shape_vdb_contents *contents,
-                        shape_error *error)
+shape_status read_apart(const char *path, const char *shown, const shape_vdb_read_options *options,
+                        shape_vdb_contents *contents, shape_error *error)
 {
     int ends[2];
     if (pipe(ends))
-        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "%s: no pipe to read it through: %s", path,
+        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "%s: no pipe to read it through: %s", shown,
                                std::strerror(errno));
     std::fflush(nullptr);
     pid_t reader = fork();
     if (reader < 0) {
         close(ends[0]);
         close(ends[1]);
-        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "%s: no process to read it in: %s", path,
+        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "%s: no process to read it in: %s", shown,
                                std::strerror(errno));
     }
     if (!reader) {
@@ -232,7 +232,7 @@ shape_status read_apart(const char *path, const shape_vdb_read_options *options,
         be_the_reader(path, *options, ends[1]);
     }
     close(ends[1]);
-    shape_status status = collect(path, ends[0], options->max_bytes, contents, error);
+    shape_status status = collect(shown, ends[0], options->max_bytes, contents, error);
     close(ends[0]); // a reader that still writes ends by it
     int how;
     while (waitpid(reader, &how, 0) < 0 && errno == EINTR) {
@@ -266,7 +266,7 @@ shape_status check_header(const char *path, const unsigned char *bytes, size_t s
 
 extern "C" shape_vdb_read_options shape_vdb_read_defaults(void)
 {
-    shape_vdb_read_options options = {nullptr, size_t(4) << 30, false};
+    shape_vdb_read_options options = {nullptr, size_t(4) << 30, false, nullptr};
     return options;
 }
 
@@ -279,19 +279,20 @@ extern "C" shape_status shape_vdb_read(const char *path, const shape_vdb_read_op
                                        shape_vdb_contents *contents, shape_error *error)
 {
     unsigned char first[12];
+    const char *shown = options->shown ? options->shown : path;
     std::memset(contents, 0, sizeof *contents);
     FILE *file = std::fopen(path, "rb");
     if (!file)
-        return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read: %s", path, std::strerror(errno));
+        return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read: %s", shown, std::strerror(errno));
     size_t size = std::fread(first, 1, sizeof first, file);
     bool wrong = std::ferror(file) || std::fseek(file, 0, SEEK_END);
     long end = wrong ? -1 : std::ftell(file);
     std::fclose(file);
     if (end < 0)
-        return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read it", path);
-    shape_status status = check_header(path, first, size, error);
+        return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read it", shown);
+    shape_status status = check_header(shown, first, size, error);
     if (!status)
-        status = read_apart(path, options, contents, error);
+        status = read_apart(path, shown, options, contents, error);
     contents->file_bytes = size_t(end);
     return status;
 }

@@ -9,9 +9,10 @@ extern "C" {
 #endif
 
 typedef struct shape_vdb_read_options {
-    const char *grid; /* which grid, by its name; NULL: the only scalar one */
-    size_t max_bytes; /* that reading may take; default 4 GiB */
-    bool y_up;        /* the file's y is up; default false: its z becomes our y */
+    const char *grid;  /* which grid, by its name; NULL: the only scalar one */
+    size_t max_bytes;  /* that reading may take; default 4 GiB */
+    bool y_up;         /* the file's y is up; default false: its z becomes our y */
+    const char *shown; /* what errors call the file; NULL: its path */
 } shape_vdb_read_options;
 
 typedef struct shape_vdb_contents {
