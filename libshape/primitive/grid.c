@@ -286,6 +286,26 @@ double shape_grid_sum(const shape_grid *grid)
     return sum * (double)grid->gain;
 }
 
+void shape_grid_copy(const shape_grid *grid, float scale, const int at[3], const int size[3], float *values)
+{
+    size_t total = table_size(grid);
+    scale *= grid->gain;
+    for (size_t i = 0; i < total; i++) {
+        const float *from = grid->values + (size_t)grid->table[i] * POINTS;
+        int low[3];
+        brick_place(grid, i, low);
+        for (int z = 0; z < SIDE && low[2] + z < grid->points[2]; z++)
+            for (int y = 0; y < SIDE && low[1] + y < grid->points[1]; y++) {
+                float *to = values +
+                            ((size_t)(at[2] + low[2] + z) * (size_t)size[1] + (size_t)(at[1] + low[1] + y)) *
+                                (size_t)size[0] +
+                            (size_t)(at[0] + low[0]);
+                for (int x = 0; x < SIDE && low[0] + x < grid->points[0]; x++)
+                    to[x] = scale * from[(z * SIDE + y) * SIDE + x];
+            }
+    }
+}
+
 /* --- clouds --- */
 
 shape_status shape_set_add_grid(shape_set *set, const char *name, shape_grid *grid, const shape_frame *frame,

@@ -73,6 +73,7 @@ float metaball_density(vec3 p, float sum)
 }
 
 #include "field/detail.glsl"
+#include "field/grid.glsl"
 
 float density_at(vec3 p, float u2)
 {
@@ -80,6 +81,8 @@ float density_at(vec3 p, float u2)
         return 0.0;
     if (cloud_detailed)
         return detail_density(p);
+    if (cloud_model == MODEL_GRID)
+        return grid_density(p);
     if (cloud_model == MODEL_UNIFORM)
         return 1.0;
     if (cloud_model == MODEL_SPHEROID)

@@ -115,7 +115,14 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     double start = now_ms();
     renderer->volume = volume;
     renderer->window_length = window_length(volume);
+    for (size_t i = 0; i < volume->cloud_count; i++)
+        if (is_paper(renderer) && volume->clouds[i].field.model == SHAPE_MODEL_GRID)
+            return shape_error_set(
+                error, SHAPE_ERROR_ARGUMENT,
+                "the paper's methods draw primitives, not voxel grids (choose another --method)");
     shape_status status = gl_scene_load(&renderer->scene, volume, error);
+    if (!status && renderer->options.method == SHAPE_GL_EXACT)
+        status = gl_volumes_load(&renderer->scene, volume, error);
     renderer->costs.upload_ms = now_ms() - start;
     return status;
 }
@@ -211,6 +218,7 @@ static void bind_scene(const gl_scene *scene, GLuint program)
     bind(program, "noise_cells", 4, GL_TEXTURE_3D, scene->noise_cells);
     set_int(program, "cloud_count", scene->shown_count);
     bind(program, "noise_linear", 5, GL_TEXTURE_3D, scene->noise_linear);
+    bind(program, "grid_values", 14, GL_TEXTURE_3D, scene->grid_values);
 }
 
 static void bind_grids(const gl_grids *grids, GLuint program)

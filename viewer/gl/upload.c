@@ -2,7 +2,7 @@
  *
  * A cloud's record, GL_RECORD_TEXELS texels:
  *   0..2    rows of the world-to-cloud matrix; w: the eye in the cloud's frame
- *   3, 4    box, low with the extinction, high with the number of its tree's first node
+ *   3, 4    box, low with the extinction (of a grid: that of its largest value), high with the number of its tree's first node
  *   5       kappa, octaves, 1 / noise scale, model
  *   6       first sphere, first ellipsoid, nodes of the tree, support
  *   7       edge, spheres, ellipsoids, metres of the world a noise cell
@@ -14,7 +14,9 @@
  *   17      lobe mix, mean cosine, share in the phase function's peak, g of the rest
  *   18      baked density: its place in the atlas [voxels], voxels a metre of the cloud's frame
  *   19      baked density: low corner of its box
- *   20..23  not used
+ *   20      voxel grid: its place in the atlas of values [voxels] (exact view)
+ *   21      voxel grid: points along x, y, z
+ *   22, 23  not used
  *   24      whether the cloud has details or is a layer (else the rest is 0), first sphere and ellipsoid of its shapes,
  *           nodes of the shapes' tree
  *   25      the first of them, smoothness, displace, 1 / displace_scale
@@ -301,8 +303,8 @@ void gl_scene_put(gl_scene *scene, int cloud, int texel, double x, double y, dou
 
 void gl_scene_free(gl_scene *scene)
 {
-    GLuint *textures[] = {&scene->clouds, &scene->spheres,     &scene->ellipsoids,
-                          &scene->nodes,  &scene->noise_cells, &scene->noise_linear};
+    GLuint *textures[] = {&scene->clouds,      &scene->spheres,      &scene->ellipsoids, &scene->nodes,
+                          &scene->noise_cells, &scene->noise_linear, &scene->grid_values};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         glDeleteTextures(1, textures[i]);
     free(scene->records);

@@ -63,6 +63,10 @@ double shape_grid_integral(const shape_grid *grid, shape_vec3 origin, shape_vec3
 /* The sum of all values, times the gain [voxels^3]: the integral of density over space, if the outermost points are 0. */
 double shape_grid_sum(const shape_grid *grid);
 
+/* Writes all values, times the gain and `scale`, into an array of size[0] x size[1] x size[2] floats, x fastest, from
+ * the place `at` on; they must fit. */
+void shape_grid_copy(const shape_grid *grid, float scale, const int at[3], const int size[3], float *values);
+
 /* Adds a cloud of the model `grid`; frame takes voxels to metres of the world. The set owns the grid from here on, also
  * after an error. The cloud's list holds one ellipsoid, which touches the grid's box: its support. */
 shape_status shape_set_add_grid(shape_set *set, const char *name, shape_grid *grid, const shape_frame *frame,
