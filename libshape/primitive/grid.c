@@ -182,11 +182,6 @@ static inline size_t brick_of(const shape_grid *grid, int x, int y, int z)
                        (size_t)(x / BRICK)];
 }
 
-static inline size_t place_in_brick(int x, int y, int z)
-{
-    return (size_t)(((z % BRICK) * SIDE + y % BRICK) * SIDE + x % BRICK);
-}
-
 float shape_grid_sample(const shape_grid *grid, shape_vec3 p)
 {
     if (!(p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < (float)(grid->points[0] - 1) &&
