@@ -92,9 +92,16 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
     cloud->shape_list = shape_set_list_const(set, i);
     bool grid = cloud->field.model == SHAPE_MODEL_GRID;
     if (grid != (cloud->shape_list->grid != NULL))
-        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
-                               "cloud \"%s\" has the model grid without a voxel grid, or one with another model",
-                               set->clouds[i].name);
+        return shape_error_set(
+            error, SHAPE_ERROR_ARGUMENT,
+            "cloud \"%s\" has the model grid without a voxel grid, or one with another model",
+            set->clouds[i].name);
+    if (grid && shape_detail_is_on(&cloud->field.detail))
+        return shape_error_set(
+            error, SHAPE_ERROR_ARGUMENT,
+            "cloud \"%s\" has details with the model grid, whose density is its voxels' (set "
+            "them to 0)",
+            set->clouds[i].name);
     cloud->most = grid ? cloud->shape_list->grid->most * cloud->shape_list->grid->gain : 1;
     if (!shape_frame_invert(&cloud->frame, &cloud->inverse))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "cloud \"%s\" has a frame without an inverse",
@@ -105,8 +112,7 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
     cloud->support = shape_cloud_support(&set->clouds[i], cloud->shape_list);
     cloud->margin = shape_cloud_margin(&set->clouds[i], cloud->shape_list);
     cloud->box = shape_cloud_box(&set->clouds[i], cloud->shape_list);
-    cloud->detailed =
-        cloud->field.model == SHAPE_MODEL_LAYER || (!grid && shape_detail_is_on(&cloud->field.detail));
+    cloud->detailed = cloud->field.model == SHAPE_MODEL_LAYER || shape_detail_is_on(&cloud->field.detail);
     shape_status status = find_list(set, volume, i, error);
     if (!status)
         status = find_tree(set, volume, i, error);
