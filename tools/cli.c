@@ -116,7 +116,7 @@ const char *cli_argument_name(const cli_option *option)
     return option->choices ? option->choices : names[option->kind];
 }
 
-static const char *help_of(const cli_program *program, const cli_option *option)
+const char *cli_help_of(const cli_program *program, const cli_option *option)
 {
     for (const cli_help *help = program->help; help && help->name; help++)
         if (!strcmp(help->name, option->name))
@@ -137,9 +137,9 @@ static void print_help(const cli_program *program)
             snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name, argument ? " " : "",
                      argument ? argument : "");
             if (strlen(left) > 30)
-                printf("%s\n%32s%s\n", left, "", help_of(program, option));
+                printf("%s\n%32s%s\n", left, "", cli_help_of(program, option));
             else
-                printf("%-32s%s\n", left, help_of(program, option));
+                printf("%-32s%s\n", left, cli_help_of(program, option));
         }
     }
     if (program->examples)

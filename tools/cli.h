@@ -139,6 +139,8 @@ extern cli_medium cli_medium_values;
 extern const cli_medium cli_medium_defaults;
 /* The rows that fill cli_medium_values; put them into a group titled "Medium and frame". */
 extern const cli_option cli_medium_options[];
+/* Those of them that do not ask for primitives: extinction to droplet, and --at. */
+extern const cli_option cli_optics_options[];
 /* Overrides in *cloud what was given on the command line, and places it by --at (added to the frame's translation). */
 void cli_medium_apply(shape_cloud *cloud);
 

@@ -8,13 +8,13 @@
 #include "cli.h"
 #include "cli_private.h"
 
-typedef void option_printer(FILE *out, const cli_option *option);
+typedef void option_printer(FILE *out, const cli_program *program, const cli_option *option);
 
 static void each_option(FILE *out, const cli_program *program, option_printer *print)
 {
     for (const cli_group *group = program->groups; group->title; group++)
         for (const cli_option *option = group->options; option->name; option++)
-            print(out, option);
+            print(out, program, option);
 }
 
 /* --- the manual page */
@@ -38,7 +38,7 @@ static void roff_text(FILE *out, const char *text)
         roff_character(out, *c, c == text || c[-1] == '\n');
 }
 
-static void roff_option(FILE *out, const cli_option *option)
+static void roff_option(FILE *out, const cli_program *program, const cli_option *option)
 {
     const char *argument = cli_argument_name(option);
     fputs(".TP\n", out);
@@ -53,7 +53,7 @@ static void roff_option(FILE *out, const cli_option *option)
         fputs("\\fR", out);
     }
     fputc('\n', out);
-    roff_text(out, option->help);
+    roff_text(out, cli_help_of(program, option));
     fputc('\n', out);
 }
 
@@ -100,7 +100,7 @@ static void print_manual(FILE *out, const cli_program *program)
         roff_text(out, group->title);
         fputc('\n', out);
         for (const cli_option *option = group->options; option->name; option++)
-            roff_option(out, option);
+            roff_option(out, program, option);
     }
     if (program->examples)
         roff_examples(out, program->examples);
@@ -118,16 +118,18 @@ static bool takes_file(const cli_option *option)
     return option->kind == CLI_TEXT || option->kind == CLI_TEXTS;
 }
 
-static void bash_name(FILE *out, const cli_option *option)
+static void bash_name(FILE *out, const cli_program *program, const cli_option *option)
 {
+    (void)program;
     if (option->letter)
         fprintf(out, "-%c ", option->letter);
     fprintf(out, "--%s ", option->name);
 }
 
 /* A branch of the case over the word before: words to choose from, or nothing where a number is wanted. */
-static void bash_branch(FILE *out, const cli_option *option)
+static void bash_branch(FILE *out, const cli_program *program, const cli_option *option)
 {
+    (void)program;
     if (option->kind == CLI_FLAG || takes_file(option))
         return;
     fputs("    ", out);
@@ -190,7 +192,7 @@ static void zsh_text(FILE *out, const char *text)
     }
 }
 
-static void zsh_option(FILE *out, const cli_option *option)
+static void zsh_option(FILE *out, const cli_program *program, const cli_option *option)
 {
     const char *argument = cli_argument_name(option);
     const char *more = argument ? "=" : "";
@@ -199,7 +201,7 @@ static void zsh_option(FILE *out, const cli_option *option)
                 argument ? "+" : "", option->name, more);
     else
         fprintf(out, "  '--%s%s[", option->name, more);
-    zsh_text(out, option->help);
+    zsh_text(out, cli_help_of(program, option));
     fputc(']', out);
     if (argument) {
         fputc(':', out);

@@ -15,23 +15,31 @@ static void read_scene(cli_input *input, const unsigned char *bytes, const char 
     input->set = cli_scene_make(input->scene, input->path);
 }
 
-cli_input cli_input_read(const char *path)
+cli_input cli_input_decode(const char *path, const unsigned char *bytes, size_t size)
 {
-    cli_input input = {.path = path};
+    cli_input input = {.path = path, .size = size};
     shape_error error;
-    unsigned char *bytes;
     const char *shown = strcmp(path, "-") ? path : "standard input";
-    cli_check(shape_file_read(path, MAX_INPUT_FILE, &bytes, &input.size, &error), &error);
-    cli_note_input(path, bytes, input.size);
     size_t length = strlen(path);
     bool json = length > 5 && !strcmp(path + length - 5, ".json");
-    if (json || shape_scene_is(bytes, input.size)) {
+    cli_note_input(path, bytes, size);
+    if (json || shape_scene_is(bytes, size)) {
         read_scene(&input, bytes, shown);
     } else {
-        if (shape_neph_decode(bytes, input.size, &input.set, &error))
+        if (shape_neph_decode(bytes, size, &input.set, &error))
             cli_fail("%s: %s", shown, error.text);
         shape_neph_version(bytes, &input.major, &input.minor);
     }
+    return input;
+}
+
+cli_input cli_input_read(const char *path)
+{
+    shape_error error;
+    unsigned char *bytes;
+    size_t size;
+    cli_check(shape_file_read(path, MAX_INPUT_FILE, &bytes, &size, &error), &error);
+    cli_input input = cli_input_decode(path, bytes, size);
     free(bytes);
     return input;
 }

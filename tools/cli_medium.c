@@ -13,23 +13,45 @@ cli_medium cli_medium_values = DEFAULTS;
 #define GIVEN(name) &cli_medium_values.name##_given, false
 #define VALUE(name) &cli_medium_values.name
 
+/* Rows that two tables share. */
+#define OPTICS_ROWS                                                                                            \
+    {"extinction",     0, CLI_NUMBER, VALUE(extinction), 0, 1e9, "S", "extinction at density 1, 1/m [2]",      \
+     GIVEN(extinction)},                                                                                       \
+        {"albedo",     0, CLI_NUMBER, VALUE(albedo), 0, 1, "W", "single-scattering albedo, 0 to 1 [1]",        \
+         GIVEN(albedo)},                                                                                       \
+        {"phase",                                                                                              \
+         0,                                                                                                    \
+         CLI_CHOICE,                                                                                           \
+         VALUE(phase),                                                                                         \
+         0,                                                                                                    \
+         0,                                                                                                    \
+         "hg|isotropic|rayleigh|mie|two-lobe",                                                                 \
+         "phase function [hg]",                                                                                \
+         GIVEN(phase)},                                                                                        \
+        {"g",     0,      CLI_NUMBER, VALUE(g),                                                                \
+         -0.9999, 0.9999, "G",        "mean cosine of hg and of the first of two lobes [0.85]",                \
+         GIVEN(g)},                                                                                            \
+        {"g2",     0,      CLI_NUMBER, VALUE(g2),                                                              \
+         -0.9999,  0.9999, "G",        "mean cosine of the second of two lobes [-0.3]",                        \
+         GIVEN(g2)},                                                                                           \
+        {"lobe-mix",     0, CLI_NUMBER, VALUE(lobe_mix), 0, 1, "W", "weight of the second lobe, 0 to 1 [0.3]", \
+         GIVEN(lobe_mix)},                                                                                     \
+    {                                                                                                          \
+        "droplet", 0, CLI_NUMBER, VALUE(droplet), 5, 50, "D",                                                  \
+            "droplet diameter of mie, micrometres, 5 to 50 [10]", GIVEN(droplet)                               \
+    }
+#define AT_ROW                                                                                               \
+    {                                                                                                        \
+        "at", 0, CLI_VECTOR, VALUE(at), -1e12, 1e12, "X,Y,Z", "where the cloud is placed, metres [0,0,0]",   \
+            GIVEN(at)                                                                                        \
+    }
+
+const cli_option cli_optics_options[] = {OPTICS_ROWS, AT_ROW, {0}};
+
 const cli_option cli_medium_options[] = {
     {"model", 0, CLI_CHOICE, VALUE(model), 0, 0, "uniform|spheroid|metaball|layer",
      "density model [spheroid]", GIVEN(model)},
-    {"extinction", 0, CLI_NUMBER, VALUE(extinction), 0, 1e9, "S", "extinction at density 1, 1/m [2]",
-     GIVEN(extinction)},
-    {"albedo", 0, CLI_NUMBER, VALUE(albedo), 0, 1, "W", "single-scattering albedo, 0 to 1 [1]",
-     GIVEN(albedo)},
-    {"phase", 0, CLI_CHOICE, VALUE(phase), 0, 0, "hg|isotropic|rayleigh|mie|two-lobe", "phase function [hg]",
-     GIVEN(phase)},
-    {"g", 0, CLI_NUMBER, VALUE(g), -0.9999, 0.9999, "G",
-     "mean cosine of hg and of the first of two lobes [0.85]", GIVEN(g)},
-    {"g2", 0, CLI_NUMBER, VALUE(g2), -0.9999, 0.9999, "G", "mean cosine of the second of two lobes [-0.3]",
-     GIVEN(g2)},
-    {"lobe-mix", 0, CLI_NUMBER, VALUE(lobe_mix), 0, 1, "W", "weight of the second lobe, 0 to 1 [0.3]",
-     GIVEN(lobe_mix)},
-    {"droplet", 0, CLI_NUMBER, VALUE(droplet), 5, 50, "D",
-     "droplet diameter of mie, micrometres, 5 to 50 [10]", GIVEN(droplet)},
+    OPTICS_ROWS,
     {"kappa", 0, CLI_NUMBER, VALUE(kappa), 0, 1, "K", "share of noise in a spheroid's edge, 0 to 1 [0.5]",
      GIVEN(kappa)},
     {"octaves", 0, CLI_INTEGER, VALUE(octaves), 1, 16, "N", "octaves of noise, 1 to 16 [5]", GIVEN(octaves)},
@@ -52,8 +74,7 @@ const cli_option cli_medium_options[] = {
      "how deep billows and wisps reach, a share of the radius, 0 to 1; 0: a half [0]", GIVEN(detail_depth)},
     {"detail-scale", 0, CLI_NUMBER, VALUE(detail_scale), 0, 1e9, "L",
      "metres a cell of their noise; 0: twice the noise scale [0]", GIVEN(detail_scale)},
-    {"at", 0, CLI_VECTOR, VALUE(at), -1e12, 1e12, "X,Y,Z", "where the cloud is placed, metres [0,0,0]",
-     GIVEN(at)},
+    AT_ROW,
     {0}};
 
 static void apply_details(shape_detail *detail)

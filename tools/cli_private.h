@@ -43,6 +43,9 @@ void cli_append_input(const char *word);
 /* What stands for an option's value in --help; NULL for a flag. */
 const char *cli_argument_name(const cli_option *option);
 
+/* An option's line of --help; a program may have its own for a common one. */
+const char *cli_help_of(const cli_program *program, const cli_option *option);
+
 typedef enum cli_generate_kind { CLI_GENERATE_MAN, CLI_GENERATE_BASH, CLI_GENERATE_ZSH } cli_generate_kind;
 /* Writes a manual page or a shell's completion to common->output; program->groups has all options, the common ones
  * too. */

@@ -31,12 +31,15 @@ char *cli_scene_file(const char *scene_path, const char *file);
 typedef struct cli_input {
     const char *path;
     shape_set *set;
-    shape_scene *scene;    /* NULL: a .neph */
+    shape_scene *scene;    /* NULL: a .neph, or a volume */
+    bool volume;           /* a .vdb or raw floats, read by cli_volume_input_read */
     size_t size;           /* bytes of the file */
     unsigned major, minor; /* of a .neph */
 } cli_input;
 
 /* Reads a .neph or a scene, told apart by what is in it, from a path or "-". Mistakes end the program, exit 1. */
 cli_input cli_input_read(const char *path);
+/* The same from the bytes of a file. */
+cli_input cli_input_decode(const char *path, const unsigned char *bytes, size_t size);
 void cli_input_free(cli_input *input);
 #endif

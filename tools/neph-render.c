@@ -1,4 +1,4 @@
-/* neph-render: a .neph to a picture on the CPU, and the comparison of two pictures. */
+/* neph-render: a .neph or a volume to a picture on the CPU, and the comparison of two pictures. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +11,7 @@
 #include "cli_scene.h"
 #include "render_march.h"
 #include "render_opaque.h"
+#include "cli_volume.h"
 #include "shape/file.h"
 #include "shape/image.h"
 #include "shape/imageerror.h"
@@ -64,6 +65,8 @@ static const cli_option compare_options[] = {
     {0}};
 
 static const cli_group groups[] = {{"Picture", cli_picture_options},
+                                   {"Volumes (.vdb, raw)", cli_volume_options},
+                                   {"Medium and place of volumes", cli_optics_options},
                                    {"Rendering", render_options},
                                    {"Opaque things", render_opaque_options},
                                    {"Marching (--method march)", render_march_options},
@@ -72,19 +75,20 @@ static const cli_group groups[] = {{"Picture", cli_picture_options},
                                    {"Scene", cli_scene_options},
                                    {0}};
 
-static const cli_program program = {.name = "neph-render",
-                                    .arguments = "IN | --compare A B",
-                                    .about = "Renders a .neph or a scene (docs/scene.md) on the CPU to PNG "
-                                             "(tone-mapped), EXR or PFM (linear\n"
-                                             "radiance). An EXR also holds the variance of each pixel.",
-                                    .examples =
-                                        "  neph-render cloud.neph -o cloud.png --spp 256\n"
-                                        "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
-                                        "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
-                                        "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
-                                    .min_arguments = 1,
-                                    .max_arguments = 2,
-                                    .groups = groups};
+static const cli_program program = {
+    .name = "neph-render",
+    .arguments = "IN | --compare A B",
+    .about = "Renders a .neph, a scene (docs/scene.md) or a volume (.vdb, raw) on "
+             "the CPU to PNG (tone-mapped), EXR or\n"
+             "PFM (linear radiance). An EXR also holds the variance of each pixel.",
+    .examples = "  neph-render cloud.neph -o cloud.png --spp 256\n"
+                "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
+                "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
+                "  neph-render smoke.vdb -o smoke.png --density-gain 3 --extinction 0.5\n"
+                "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
+    .min_arguments = 1,
+    .max_arguments = 2,
+    .groups = groups};
 
 static double seconds(void)
 {
@@ -305,7 +309,7 @@ static void render(const cli_common *common)
     check_command(common);
     shape_image_format format = choose_format(common);
     cli_save_check(common);
-    cli_input input = cli_input_read(common->arguments[0]);
+    cli_input input = cli_volume_input_read(common->arguments[0]);
     const shape_set *set = input.set;
     use_scene(&input);
     shape_opaque *opaque = render_opaque_read();

@@ -9,6 +9,7 @@
 #include "cli.h"
 #include "cli_picture.h"
 #include "cli_scene.h"
+#include "cli_volume.h"
 #include "shape/image.h"
 #include "view.h"
 
@@ -34,14 +35,19 @@ static const cli_option view_options[] = {
      "read the shaders from here, not the built-in ones", NULL, true},
     {0}};
 
-static const cli_group groups[] = {
-    {"View", view_options}, {"Picture", cli_picture_options}, {"Scene", cli_scene_options}, {0}};
+static const cli_group groups[] = {{"View", view_options},
+                                   {"Picture", cli_picture_options},
+                                   {"Volumes (.vdb, raw)", cli_volume_options},
+                                   {"Medium and place of volumes", cli_optics_options},
+                                   {"Scene", cli_scene_options},
+                                   {0}};
 
 static const cli_program program = {
     .name = "neph-view",
     .arguments = "IN",
     .about =
-        "Shows a .neph or a scene (docs/scene.md) in a window, or writes a picture of it without one. \"-\" "
+        "Shows a .neph, a scene (docs/scene.md) or a volume (.vdb, raw) in a window, or writes a picture of "
+        "it without one. \"-\" "
         "reads\n"
         "standard input. --save-scene writes what the window shows when it is closed.\n"
         "In the window: drag to turn, right drag to look round, wheel to come nearer, W A S D E Q to fly,\n"
@@ -116,13 +122,13 @@ static void print_bench(const view_job *job, shape_gl_costs costs, double first_
 {
     qsort(times, (size_t)count, sizeof *times, compare_doubles);
     int p95 = (int)ceil(0.95 * count) - 1;
-    json_t *report =
-        json_pack("{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f}, s:I, s:f, s:f}", "method",
-                  method_names[job->options.method], "size", job->view.width, job->view.height, "frames",
-                  count, "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms",
-                  costs.bake_ms, "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2],
-                  "p95", times[p95], "primitives", (json_int_t)count_primitives(job->volume),
-                  "steps_per_pixel", costs.steps_per_pixel, "fetches_per_pixel", costs.fetches_per_pixel);
+    json_t *report = json_pack(
+        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f}, s:I, s:f, s:f}", "method",
+        method_names[job->options.method], "size", job->view.width, job->view.height, "frames", count,
+        "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms", costs.bake_ms,
+        "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2], "p95",
+        times[p95], "primitives", (json_int_t)count_primitives(job->volume), "steps_per_pixel",
+        costs.steps_per_pixel, "fetches_per_pixel", costs.fetches_per_pixel);
     if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) ||
         putchar('\n') == EOF)
         cli_fail("standard output: cannot write");
@@ -208,7 +214,7 @@ int main(int argc, char **argv)
             cli_wrong("%s", error.text);
     }
     cli_save_check(&common);
-    cli_input input = cli_input_read(common.arguments[0]);
+    cli_input input = cli_volume_input_read(common.arguments[0]);
     job.set = input.set;
     if (input.scene)
         cli_picture_use_scene(input.scene);

@@ -129,6 +129,7 @@ int main(int argc, char **argv)
     set3(program, "sun_direction", light.sun);
     set3(program, "world_up", shape_dvec3_make(0, 1, 0));
     glUniform2f(glGetUniformLocation(program, "picture_size"), WIDTH, HEIGHT);
+    glUniform1i(glGetUniformLocation(program, "grid_values"), TEXTURES); /* a .neph has none */
     glClearColor(0.36f, 0.52f, 0.72f, 1);
 
     const int side[3] = {SHAPE_NOISE_SIZE, SHAPE_NOISE_SIZE, SHAPE_NOISE_SIZE};

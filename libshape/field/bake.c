@@ -146,7 +146,7 @@ static shape_status fill_brick(const shape_volume_cloud *cloud, const shape_bake
         return status;
     for (int i = 0; i < BRICK; i++)
         x[i] = corner[0] + baked->voxel * ((float)i + 0.5f);
-    const float limit = cloud->support * cloud->support;
+    const float limit = cloud->support * cloud->support, unit = 255 / cloud->most;
     for (int k = 0; k < BRICK; k++)
         for (int j = 0; j < BRICK; j++) {
             float y = corner[1] + baked->voxel * ((float)j + 0.5f),
@@ -159,7 +159,7 @@ static shape_status fill_brick(const shape_volume_cloud *cloud, const shape_bake
             for (int i = 0; i < BRICK; i++)
                 if (u2[i] <= limit)
                     row[2 * i] =
-                        (uint8_t)(255 * shape_cloud_density_at(cloud, shape_vec3_make(x[i], y, z), u2[i]) +
+                        (uint8_t)(unit * shape_cloud_density_at(cloud, shape_vec3_make(x[i], y, z), u2[i]) +
                                   0.5f);
         }
     return SHAPE_OK;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "field/detail.h"
+#include "shape/grid.h"
 #include "shape/volume.h"
 
 /* u^2 below which a metaball's pole is cut off: a thousandth of the radius. */
@@ -103,8 +104,9 @@ float shape_cloud_density_at(const shape_volume_cloud *cloud, shape_vec3 p, floa
         return density_spheroid(cloud, p, sqrtf(u2));
     case SHAPE_MODEL_METABALL:
         return density_metaball(cloud, p, density_metaball_sum(cloud->list, p));
+    case SHAPE_MODEL_GRID:
+        return shape_grid_sample(cloud->list->grid, p);
     case SHAPE_MODEL_LAYER: /* always detailed */
-    case SHAPE_MODEL_GRID:  /* refused by shape_volume_create */
         break;
     }
     return 0;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "field/grid_ray.h"
 #include "shape/volume.h"
 
 shape_ray shape_volume_ray(const shape_volume_cloud *cloud, shape_dvec3 origin, shape_dvec3 direction)
@@ -108,6 +109,8 @@ shape_status shape_cloud_candidates(const shape_volume_cloud *cloud, shape_ray r
 {
     const shape_tree *tree = cloud->tree;
     found->count = 0;
+    if (cloud->field.model == SHAPE_MODEL_GRID)
+        return grid_candidates(cloud->list->grid, ray, t_min, t_max, found, error);
     for (size_t i = 0; i < tree->count;) {
         const shape_tree_node *node = &tree->nodes[i];
         float t0 = t_min, t1 = t_max;
@@ -177,6 +180,9 @@ static double cloud_depth(const shape_volume_cloud *cloud, shape_ray ray, const 
     double sum = 0;
     size_t first, next = 0;
     float t0, t1, support2 = cloud->support * cloud->support;
+    if (cloud->field.model == SHAPE_MODEL_GRID && step * shape_vec3_length(ray.direction) <= 1)
+        return shape_grid_integral(cloud->list->grid, ray.origin, ray.direction, t_min, t_max) *
+               (double)cloud->medium.extinction;
     while (shape_candidates_join(found, t_min, t_max, &first, &next, &t0, &t1)) {
         int steps = (int)ceilf(fminf((t1 - t0) / step, 1e6f));
         steps = steps < 1 ? 1 : steps;

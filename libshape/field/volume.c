@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "field/detail.h"
+#include "shape/grid.h"
 
 /* Points that have the same place here have the same supports. */
 static bool same_supports(const shape_set *set, const shape_volume *volume, size_t i, size_t j)
@@ -89,10 +90,19 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
     cloud->field = set->clouds[i].field;
     cloud->medium = set->clouds[i].medium;
     cloud->shape_list = shape_set_list_const(set, i);
-    if (cloud->field.model > SHAPE_MODEL_LAYER)
-        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
-                               "cloud \"%s\" has a model that is not made of primitives",
-                               set->clouds[i].name);
+    bool grid = cloud->field.model == SHAPE_MODEL_GRID;
+    if (grid != (cloud->shape_list->grid != NULL))
+        return shape_error_set(
+            error, SHAPE_ERROR_ARGUMENT,
+            "cloud \"%s\" has the model grid without a voxel grid, or one with another model",
+            set->clouds[i].name);
+    if (grid && shape_detail_is_on(&cloud->field.detail))
+        return shape_error_set(
+            error, SHAPE_ERROR_ARGUMENT,
+            "cloud \"%s\" has details with the model grid, whose density is its voxels' (set "
+            "them to 0)",
+            set->clouds[i].name);
+    cloud->most = grid ? cloud->shape_list->grid->most * cloud->shape_list->grid->gain : 1;
     if (!shape_frame_invert(&cloud->frame, &cloud->inverse))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "cloud \"%s\" has a frame without an inverse",
                                set->clouds[i].name);

@@ -274,11 +274,26 @@ static void put_file(const shape_set *set, const shape_box *boxes, uint64_t chun
     neph_put_u32(bytes + table_end, shape_crc32(bytes, (size_t)table_end));
 }
 
+/* A .neph holds primitives and stays small. */
+static shape_status check_no_grids(const shape_set *set, shape_error *error)
+{
+    for (size_t i = 0; i < set->cloud_count; i++)
+        if (shape_set_list_const(set, i)->grid)
+            return shape_error_set(
+                error, SHAPE_ERROR_ARGUMENT,
+                "cloud \"%s\" is a voxel grid, which no .neph holds (make primitives of it "
+                "with neph-vdb)",
+                set->clouds[i].name);
+    return SHAPE_OK;
+}
+
 shape_status shape_neph_encode(const shape_set *set, unsigned char **bytes, size_t *size, shape_error *error)
 {
     shape_status status = shape_set_check(set, error);
     if (!status)
         status = check_texts_and_extras(set, error);
+    if (!status)
+        status = check_no_grids(set, error);
     if (status)
         return status;
     uint64_t chunks, total;

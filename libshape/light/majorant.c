@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/lattice.h"
+#include "shape/grid.h"
 
 #define ALL_PRIMITIVES UINT32_MAX
 
@@ -124,7 +125,8 @@ static shape_status prepare_cloud(majorant_grid *grid, const shape_volume_cloud 
     cloud->cloud = source;
     cloud->extinction = source->medium.extinction;
     cloud->mean = majorant_noise_mean(source);
-    cloud->whole = source->detailed || source->field.model == SHAPE_MODEL_METABALL;
+    cloud->whole = source->detailed || source->field.model == SHAPE_MODEL_METABALL ||
+                   source->field.model == SHAPE_MODEL_GRID;
     memcpy(cloud->to_local, source->inverse.m, sizeof cloud->to_local);
     shape_dvec3 offset = shape_frame_point(&source->inverse, grid->origin);
     cloud->to_local[0][3] = offset.x;
@@ -234,7 +236,8 @@ static void scan_cloud(const majorant_grid *grid, uint32_t index, found_list *fo
     const shape_volume_cloud *cloud = grid->clouds[index].cloud;
     const shape_primitives *list = cloud->list;
     int low[3], high[3];
-    if (cloud->field.model == SHAPE_MODEL_METABALL && !cloud->detailed) {
+    if (cloud->field.model == SHAPE_MODEL_GRID ||
+        (cloud->field.model == SHAPE_MODEL_METABALL && !cloud->detailed)) {
         found_primitive item = {index, ALL_PRIMITIVES, 0, 1};
         if (cell_range(grid, &grid->clouds[index], cloud->box, low, high))
             for (int z = low[2]; z <= high[2]; z++)
@@ -356,6 +359,20 @@ static void detailed_range(const majorant_grid *grid, const majorant_cloud *clou
     *most = fminf(*most, 1);
 }
 
+/* A little more than the cell, as a place in it may be rounded out of it. */
+static void grid_range(const majorant_grid *grid, const majorant_cloud *cloud, size_t index, float *least,
+                       float *most)
+{
+    cell_box box = local_box(grid, cloud, index);
+    double low[3], high[3];
+    for (int a = 0; a < 3; a++) {
+        double margin = 1e-3 + 1e-6 * fabs(box.middle[a]);
+        low[a] = box.middle[a] - box.half[a] - margin;
+        high[a] = box.middle[a] + box.half[a] + margin;
+    }
+    shape_grid_range(cloud->cloud->list->grid, low, high, least, most);
+}
+
 /* The range of the density of one cloud over a cell, with its least u in [low, high]. */
 static void density_range(const majorant_grid *grid, const majorant_cloud *cloud, size_t index, double low,
                           double high, majorant_group *group, float *least, float *most)
@@ -364,6 +381,10 @@ static void density_range(const majorant_grid *grid, const majorant_cloud *cloud
     float noise_low, noise_high;
     if (cloud->cloud->detailed) {
         detailed_range(grid, cloud, index, least, most);
+        return;
+    }
+    if (model == SHAPE_MODEL_GRID) {
+        grid_range(grid, cloud, index, least, most);
         return;
     }
     *least = high <= 1 ? 1 : 0;

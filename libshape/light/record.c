@@ -36,7 +36,8 @@ void shape_record_fill(shape_record record, const shape_volume_cloud *c, const s
     double scale = cbrt(fabs(shape_frame_determinant(&c->frame)));
     float share, rest, mean = shape_phase_mean_cosine(&c->medium);
     shape_delta_scaling(mean, &share, &rest);
-    put(record[3], c->box.min.x, c->box.min.y, c->box.min.z, c->medium.extinction);
+    put(record[3], c->box.min.x, c->box.min.y, c->box.min.z,
+        (double)c->medium.extinction * (double)c->most); /* baked densities are in units of the largest */
     put(record[4], c->box.max.x, c->box.max.y, c->box.max.z, (double)places->nodes);
     put(record[5], c->field.kappa, c->field.octaves, c->inverse_noise_scale, c->field.model);
     put(record[6], (double)places->spheres, (double)places->ellipsoids, (double)c->tree->count, c->support);

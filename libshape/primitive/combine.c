@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "shape/grid.h"
 
 static shape_status copy_list(shape_primitives *to, const shape_primitives *from, shape_error *error)
 {
@@ -20,6 +21,9 @@ static shape_status copy_list(shape_primitives *to, const shape_primitives *from
         memcpy(copy.ellipsoids, from->ellipsoids, from->ellipsoid_count * sizeof *from->ellipsoids);
     copy.sphere_count = from->sphere_count;
     copy.ellipsoid_count = from->ellipsoid_count;
+    copy.grid = from->grid;
+    if (copy.grid)
+        copy.grid->users++;
     *to = copy;
     return SHAPE_OK;
 }
@@ -67,6 +71,7 @@ static void free_list(shape_primitives *list)
 {
     free(list->spheres);
     free(list->ellipsoids);
+    shape_grid_release(list->grid);
     memset(list, 0, sizeof *list);
 }
 

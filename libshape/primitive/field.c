@@ -126,6 +126,8 @@ float shape_cloud_support(const shape_cloud *cloud, const shape_primitives *list
     const shape_field *field = &cloud->field;
     if (field->model == SHAPE_MODEL_METABALL)
         return sqrtf((float)shape_primitives_count(list));
+    if (list->grid)
+        return 1.7320508f; /* its one ellipsoid touches the box */
     if (field->model != SHAPE_MODEL_LAYER)
         return 1.0f + field->detail.smoothness;
     switch (field->layer.bounds) {
@@ -213,15 +215,15 @@ static shape_box bounds_box(const shape_ellipsoid *e, shape_bounds bounds)
 
 shape_box shape_cloud_box(const shape_cloud *cloud, const shape_primitives *list)
 {
-    bool layer = cloud->field.model == SHAPE_MODEL_LAYER;
+    bool grid = list->grid != NULL, layer = grid || cloud->field.model == SHAPE_MODEL_LAYER;
+    shape_bounds bounds = grid ? SHAPE_BOUNDS_BOX : cloud->field.layer.bounds;
     float grow = layer ? 1 : shape_cloud_support(cloud, list), margin = shape_cloud_margin(cloud, list);
     shape_box box = shape_box_empty();
     for (size_t i = 0; i < list->sphere_count; i++)
         box = shape_box_join(box, shape_sphere_box(&list->spheres[i], grow));
     for (size_t i = 0; i < list->ellipsoid_count; i++) {
         const shape_ellipsoid *e = &list->ellipsoids[i];
-        box = shape_box_join(box,
-                             layer ? bounds_box(e, cloud->field.layer.bounds) : shape_ellipsoid_box(e, grow));
+        box = shape_box_join(box, layer ? bounds_box(e, bounds) : shape_ellipsoid_box(e, grow));
     }
     if (margin > 0 && !shape_box_is_empty(box)) {
         shape_vec3 by = {margin, margin, margin};

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 #include "primitive/names.h"
+#include "shape/grid.h"
 
 shape_field shape_field_defaults(void)
 {
@@ -72,6 +73,7 @@ void shape_set_destroy(shape_set *set)
     for (size_t i = 0; i < set->list_count; i++) {
         free(set->lists[i].spheres);
         free(set->lists[i].ellipsoids);
+        shape_grid_release(set->lists[i].grid);
     }
     for (size_t i = 0; i < set->extra_count; i++)
         free(set->extras[i].bytes);

@@ -5,7 +5,7 @@ uniform highp sampler2D ellipsoids; // three texels an ellipsoid: centre; semi-a
 uniform highp sampler2D nodes;      // two texels a tree node: min, skip; max, content
 uniform int cloud_count;
 
-const int MODEL_UNIFORM = 0, MODEL_SPHEROID = 1, MODEL_METABALL = 2, MODEL_LAYER = 3;
+const int MODEL_UNIFORM = 0, MODEL_SPHEROID = 1, MODEL_METABALL = 2, MODEL_LAYER = 3, MODEL_GRID = 4;
 
 // The cloud that is being looked at; load_cloud fills these.
 int cloud_index = -1;

@@ -72,10 +72,11 @@ float metaball_density(vec3 p, float sum)
     return cloud_edge * n <= sum ? n : 0.0;
 }
 
-// FIELD_PLAIN: no cloud of the scene is a layer, a metaball or has details. A shader that can do those pays for them at
-// every step, whether a cloud has them or not.
+// FIELD_PLAIN: no cloud of the scene is a layer, a metaball, a voxel grid or has details. A shader that can do those pays
+// for them at every step, whether a cloud has them or not.
 #ifndef FIELD_PLAIN
 #include "field/detail.glsl"
+#include "field/grid.glsl"
 #endif
 
 float density_at(vec3 p, float u2)
@@ -85,6 +86,8 @@ float density_at(vec3 p, float u2)
 #ifndef FIELD_PLAIN
     if (cloud_detailed)
         return detail_density(p);
+    if (cloud_model == MODEL_GRID)
+        return grid_density(p);
     if (cloud_model == MODEL_METABALL)
         return metaball_density(p, metaball_sum(p));
 #endif

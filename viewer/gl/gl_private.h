@@ -40,6 +40,7 @@ shape_status gl_atlas_pack(gl_box *boxes, int count, int limit, int size[3], sha
 /* The textures of a volume; what they hold stands in shaders/field/cloud.glsl and upload.c. */
 typedef struct gl_scene {
     GLuint clouds, spheres, ellipsoids, nodes, noise_cells, noise_linear;
+    GLuint grid_values;                     /* of voxel grids, where the exact view needs them */
     float *records;                         /* what does not depend on the eye, then what was uploaded last */
     size_t *list_spheres, *list_ellipsoids; /* where each cloud's list begins, then where its shapes do */
     int *shown;                             /* the clouds that are in sight, as rows of the clouds texture */
@@ -57,6 +58,11 @@ void gl_scene_free(gl_scene *scene);
 void gl_scene_put(gl_scene *scene, int cloud, int texel, double x, double y, double z, double w);
 /* A float texture of `texels` RGBA texels, filled row by row. */
 GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, shape_error *error);
+
+/* --- volumes.c --- */
+
+/* Uploads the values of all voxel grids, after gl_scene_load. */
+shape_status gl_volumes_load(gl_scene *scene, const shape_volume *volume, shape_error *error);
 
 /* --- tiles.c --- */
 

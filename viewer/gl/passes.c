@@ -110,7 +110,8 @@ static float window_length(const shape_volume *volume)
 static bool is_plain(const shape_volume *volume)
 {
     for (size_t i = 0; i < volume->cloud_count; i++)
-        if (volume->clouds[i].detailed || volume->clouds[i].field.model == SHAPE_MODEL_METABALL)
+        if (volume->clouds[i].detailed || volume->clouds[i].field.model == SHAPE_MODEL_METABALL ||
+            volume->clouds[i].field.model == SHAPE_MODEL_GRID)
             return false;
     return true;
 }
@@ -138,9 +139,16 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     renderer->fade_left = 0;
     renderer->volume = volume;
     renderer->window_length = window_length(volume);
+    for (size_t i = 0; i < volume->cloud_count; i++)
+        if (is_paper(renderer) && volume->clouds[i].field.model == SHAPE_MODEL_GRID)
+            return shape_error_set(
+                error, SHAPE_ERROR_ARGUMENT,
+                "the paper's methods draw primitives, not voxel grids (choose another --method)");
     shape_status status = prepare_program(renderer, error);
     if (!status)
         status = gl_scene_load(&renderer->scene, volume, error);
+    if (!status && renderer->options.method == SHAPE_GL_EXACT)
+        status = gl_volumes_load(&renderer->scene, volume, error);
     renderer->costs.upload_ms = now_ms() - start;
     return status;
 }

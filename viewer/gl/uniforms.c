@@ -40,6 +40,7 @@ void gl_set_scene(const gl_scene *scene, GLuint program)
     gl_bind(program, "noise_cells", 4, GL_TEXTURE_3D, scene->noise_cells);
     gl_set_int(program, "cloud_count", scene->shown_count);
     gl_bind(program, "noise_linear", 5, GL_TEXTURE_3D, scene->noise_linear);
+    gl_bind(program, "grid_values", 14, GL_TEXTURE_3D, scene->grid_values);
 }
 
 void gl_set_grids(const gl_grids *grids, GLuint program)

@@ -2,6 +2,8 @@
  * A cloud's record is shape/record.h's; besides, texels
  *   18      baked density: its place in the atlas [voxels], voxels a metre of the cloud's frame
  *   19      baked density: low corner of its box
+ *   20      voxel grid: its place in the atlas of values [voxels] (exact view)
+ *   21      voxel grid: points along x, y, z
  */
 #include <math.h>
 #include <stdlib.h>
@@ -238,8 +240,8 @@ void gl_scene_put(gl_scene *scene, int cloud, int texel, double x, double y, dou
 
 void gl_scene_free(gl_scene *scene)
 {
-    GLuint *textures[] = {&scene->clouds, &scene->spheres,     &scene->ellipsoids,
-                          &scene->nodes,  &scene->noise_cells, &scene->noise_linear};
+    GLuint *textures[] = {&scene->clouds,      &scene->spheres,      &scene->ellipsoids, &scene->nodes,
+                          &scene->noise_cells, &scene->noise_linear, &scene->grid_values};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         glDeleteTextures(1, textures[i]);
     free(scene->records);

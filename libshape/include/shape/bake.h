@@ -11,7 +11,8 @@ extern "C" {
 
 enum { SHAPE_BAKE_BLOCK = 4 }; /* voxels a side of the blocks whose distance to matter is kept */
 
-/* A cloud's density at the centres of voxels, in its own frame. A voxel is two bytes: density times 255, rounded; and
+/* A cloud's density at the centres of voxels, in its own frame. A voxel is two bytes: density times 255 / cloud->most,
+ * rounded; and
  * how many blocks of 4^3 voxels away the nearest block with any density is (0: this one), 255 at the most, counted like
  * a king's moves. The outermost voxels are empty. */
 typedef struct shape_baked {

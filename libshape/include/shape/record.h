@@ -3,7 +3,8 @@
  *
  * Texels, each x, y, z, w:
  *   0..2    rows of the world-to-cloud matrix; w: the eye in the cloud's frame
- *   3, 4    box, low with the extinction, high with the number of its tree's first node
+ *   3, 4    box, low with the extinction (of a voxel grid: that of its largest value), high with the number of its tree's
+ *           first node
  *   5       kappa, octaves, 1 / noise scale, model
  *   6       first sphere, first ellipsoid, nodes of the tree, support
  *   7       edge, spheres, ellipsoids, metres of the world a noise cell
@@ -13,7 +14,8 @@
  *   12..15  noise offsets of 16 octaves, x + 64 y + 4096 z
  *   16      albedo, phase function, g, g2
  *   17      lobe mix, mean cosine, share in the phase function's peak, g of the rest
- *   18..23  the program's own (the viewer keeps the place of a baked density there); these functions leave them alone
+ *   18..23  the program's own (the viewer keeps the places of a baked density and of a voxel grid there); these functions
+ *           leave them alone
  *   24      whether the cloud has details or is a layer (else the rest is 0), first sphere and ellipsoid of its shapes,
  *           nodes of the shapes' tree
  *   25      the first of them, smoothness, displace, 1 / displace_scale

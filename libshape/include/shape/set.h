@@ -27,12 +27,15 @@ typedef struct shape_ellipsoid {
     shape_quat q;
 } shape_ellipsoid;
 
+struct shape_grid; /* shape/grid.h */
+
 /* A list of primitives, shared by all clouds that name it. Grow it by the functions below. */
 typedef struct shape_primitives {
     shape_sphere *spheres;
     shape_ellipsoid *ellipsoids;
     size_t sphere_count, ellipsoid_count;
     size_t sphere_capacity, ellipsoid_capacity;
+    struct shape_grid *grid; /* of a cloud of the model grid; else NULL */
 } shape_primitives;
 
 /* How primitives become density; see docs/fields.md. The numbers are those of the file format. */
@@ -41,7 +44,7 @@ typedef enum shape_model {
     SHAPE_MODEL_SPHEROID = 1, /* Jiménez 2018 Eq. 1, 2, Algorithm 1 */
     SHAPE_MODEL_METABALL = 2, /* Jiménez 2018 Eq. 19 to 21 */
     SHAPE_MODEL_LAYER = 3,    /* bounded noise volume (Páleník 2016 section 5.1) */
-    SHAPE_MODEL_GRID = 4      /* a voxel grid, kept outside the set */
+    SHAPE_MODEL_GRID = 4      /* a voxel grid (shape/grid.h), which no .neph holds */
 } shape_model;
 
 /* What may be added to the field of any cloud made of primitives; docs/fields.md has the formulas. All zero: nothing.
@@ -202,7 +205,7 @@ shape_box shape_ellipsoid_box(const shape_ellipsoid *ellipsoid, float grow);
 /* A primitive's support, the set outside which it makes no density for certain, is the primitive grown about its centre
  * by a factor, then by a margin [m] all round.
  * The factor: 1; the square root of N for metaballs; 1 + smoothness; for a layer 1, the square root of 2 (altitudes) or
- * of 3 (box), which take in the bounds' corners. */
+ * of 3 (box), which take in the bounds' corners; for a grid that of 3. */
 float shape_cloud_support(const shape_cloud *cloud, const shape_primitives *list);
 /* The margin: how far points are displaced, and how far a planet's curve drops below a primitive's rim; mostly 0. */
 float shape_cloud_margin(const shape_cloud *cloud, const shape_primitives *list);

@@ -23,6 +23,7 @@ typedef struct shape_volume_cloud {
     float inverse_noise_scale;
     int mean_octaves; /* octaves above field.octaves that are taken as their mean rather than evaluated; 0 */
     float support;    /* a primitive's support is the primitive grown by this factor */
+    float most;       /* the largest density; 1 but for grids */
     shape_box box;    /* around all supports */
     uint32_t tree_index;
     /* For clouds with details and for layers, else unused. */
@@ -59,7 +60,7 @@ float shape_ellipsoid_u2(const shape_ellipsoid *ellipsoid, shape_vec3 p);
 /* The square of u(p) = min over i of u_i(p), or any number above 1 where p is outside every support. Uses the tree. */
 float shape_cloud_u2(const shape_volume_cloud *cloud, shape_vec3 p);
 
-/* Density at p, 0 to 1, with u2 = shape_cloud_u2(p) already known (marching code knows it from the ray's
+/* Density at p, 0 to 1 (of a grid 0 to cloud->most), with u2 = shape_cloud_u2(p) already known (marching code knows it from the ray's
  * candidates). uniform: 1 where u <= 1. spheroid: Jiménez 2018 Eq. 2 and Algorithm 1. metaball: Eq. 19 to 21. layer and
  * details: docs/fields.md. In metaball and layer clouds and in those with details u2 only tells the support; a number
  * that is too small, such as 0, is then right anywhere. */
@@ -117,6 +118,7 @@ float shape_candidates_u2(const shape_candidates *found, size_t first, size_t en
 
 /* The optical depth of the whole volume along a world ray from t_min to t_max [m], marched over the joined intervals
  * with steps of at most `step` metres at their midpoints. direction is a unit vector. */
+/* Grids are integrated exactly where a step is no longer than a voxel. */
 shape_status shape_volume_optical_depth(const shape_volume *volume, shape_dvec3 origin, shape_dvec3 direction,
                                         float t_min, float t_max, float step, shape_candidates *scratch,
                                         double *depth, shape_error *error);

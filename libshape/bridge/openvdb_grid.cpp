@@ -1,0 +1,182 @@
+// A grid of an OpenVDB file as bricks: choosing it, level sets to fog, the transform.
+#include "bridge/openvdb_grid.hpp"
+
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetUtil.h>
+
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+namespace
+{
+
+bool is_scalar(const openvdb::GridBase &grid)
+{
+    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
+}
+
+std::string list_names(const openvdb::GridPtrVec &grids, bool scalar)
+{
+    std::string names;
+    for (const openvdb::GridBase::Ptr &grid : grids)
+        if (!scalar || is_scalar(*grid))
+            names += (names.empty() ? "" : ", ") + grid->getName() +
+                     (scalar ? "" : " (" + grid->valueType() + ")");
+    return names.size() > 300 ? names.substr(0, 300) + " ..." : names;
+}
+
+// The grid that is asked for, or the only scalar one; null with *error set where there is none.
+openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec &grids, const char *wanted, shape_error *error)
+{
+    openvdb::GridBase::Ptr chosen;
+    size_t scalar = 0;
+    for (const openvdb::GridBase::Ptr &grid : grids) {
+        if (!is_scalar(*grid) || (wanted && grid->getName() != wanted))
+            continue;
+        scalar++;
+        if (!chosen)
+            chosen = grid;
+    }
+    if (grids.empty())
+        shape_error_set(error, SHAPE_ERROR_FORMAT, "holds no grid at all (damaged, or of another version)");
+    else if (!chosen && wanted)
+        shape_error_set(error, SHAPE_ERROR_FORMAT, "has no scalar grid called \"%s\" (it has %s)", wanted,
+                        list_names(grids, false).c_str());
+    else if (!chosen)
+        shape_error_set(error, SHAPE_ERROR_FORMAT, "has no scalar grid (it has %s)",
+                        list_names(grids, false).c_str());
+    else if (!wanted && scalar > 1) {
+        shape_error_set(error, SHAPE_ERROR_FORMAT, "has %zu scalar grids: %s (choose one with --grid NAME)",
+                        scalar, list_names(grids, true).c_str());
+        chosen.reset();
+    }
+    return chosen;
+}
+
+openvdb::FloatGrid::Ptr to_float(const openvdb::GridBase::Ptr &grid)
+{
+    if (grid->isType<openvdb::FloatGrid>())
+        return openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+    openvdb::DoubleGrid::Ptr wide = openvdb::gridPtrCast<openvdb::DoubleGrid>(grid);
+    openvdb::FloatGrid::Ptr made =
+        openvdb::FloatGrid::create(openvdb::FloatTree::Ptr(new openvdb::FloatTree(wide->tree())));
+    made->setTransform(wide->transformPtr());
+    made->setGridClass(wide->getGridClass());
+    return made;
+}
+
+// Our voxels, counted from `origin`, to metres; false where the transform is not affine and invertible.
+bool find_frame(const openvdb::math::Transform &transform, const openvdb::Coord &origin, bool y_up,
+                shape_frame &frame)
+{
+    if (!transform.isLinear())
+        return false;
+    openvdb::math::Mat4d m = transform.baseMap()->getAffineMap()->getMat4(); // of row vectors
+    double rows[3][4];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            rows[i][j] = m(j, i);
+        rows[i][3] = m(3, i) + m(0, i) * origin.x() + m(1, i) * origin.y() + m(2, i) * origin.z();
+    }
+    for (int j = 0; j < 4; j++) {
+        frame.m[0][j] = rows[0][j];
+        frame.m[1][j] = y_up ? rows[1][j] : rows[2][j];
+        frame.m[2][j] = y_up ? rows[2][j] : -rows[1][j];
+    }
+    shape_frame inverse;
+    for (int i = 0; i < 12; i++)
+        if (!std::isfinite(frame.m[i / 4][i % 4]))
+            return false;
+    return shape_frame_invert(&frame, &inverse);
+}
+
+struct Source {
+    openvdb::FloatGrid::ConstAccessor values;
+    openvdb::Coord origin;
+};
+
+// Whether the leaf, or the tile, that holds a point has anything. A brick touches at most those of its eight corners.
+bool has_any(Source &source, const openvdb::Coord &low)
+{
+    for (int corner = 0; corner < 8; corner++) {
+        openvdb::Coord at = low.offsetBy(corner & 1 ? SHAPE_GRID_BRICK : 0, corner & 2 ? SHAPE_GRID_BRICK : 0,
+                                         corner & 4 ? SHAPE_GRID_BRICK : 0);
+        const auto *leaf = source.values.probeConstLeaf(at);
+        if (leaf ? !leaf->isEmpty() : source.values.isValueOn(at))
+            return true;
+    }
+    return false;
+}
+
+bool fill_brick(void *context, const int low[3], float *values)
+{
+    Source &source = *static_cast<Source *>(context);
+    openvdb::Coord first = source.origin.offsetBy(low[0], low[1], low[2]);
+    if (!has_any(source, first))
+        return false;
+    for (int z = 0; z < SHAPE_GRID_SIDE && values; z++)
+        for (int y = 0; y < SHAPE_GRID_SIDE; y++)
+            for (int x = 0; x < SHAPE_GRID_SIDE; x++) {
+                float value = 0;
+                bool active = source.values.probeValue(first.offsetBy(x, y, z), value);
+                *values++ = active ? value : 0;
+            }
+    return true;
+}
+
+shape_status convert(const openvdb::FloatGrid &grid, const shape_vdb_read_options &options,
+                     shape_vdb_contents &contents, shape_error *error)
+{
+    openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+    if (box.empty())
+        return shape_error_set(error, SHAPE_ERROR_FORMAT, "the grid \"%s\" is empty: no active voxel",
+                               contents.name);
+    const int far = 1 << 30; // sums of coordinates stay in range
+    for (int a = 0; a < 3; a++)
+        if (box.min()[a] < -far || box.max()[a] > far ||
+            box.max()[a] - box.min()[a] + 3 > SHAPE_GRID_MAX_SIDE)
+            return shape_error_set(error, SHAPE_ERROR_LIMIT,
+                                   "the grid \"%s\" reaches from voxel %d to %d, more than the %d that fit",
+                                   contents.name, box.min()[a], box.max()[a], SHAPE_GRID_MAX_SIDE - 2);
+    Source source{grid.getConstAccessor(), box.min().offsetBy(-1)};
+    if (!find_frame(grid.transform(), source.origin, options.y_up, contents.frame))
+        return shape_error_set(error, SHAPE_ERROR_FORMAT,
+                               "the transform of the grid \"%s\" is not affine, or has no inverse",
+                               contents.name);
+    shape_grid_source bricks = {{0, 0, 0}, fill_brick, &source};
+    for (int a = 0; a < 3; a++)
+        bricks.points[a] = box.max()[a] - box.min()[a] + 3; // one of 0 on each side
+    return shape_grid_create(&bricks, options.max_bytes, &contents.grid, error);
+}
+
+void copy_name(const std::string &from, char to[SHAPE_NAME_MAX + 1])
+{
+    size_t length = 0;
+    for (char c : from)
+        if (length < SHAPE_NAME_MAX && static_cast<unsigned char>(c) >= 0x20 &&
+            static_cast<unsigned char>(c) < 0x7f)
+            to[length++] = c;
+    to[length] = 0;
+}
+
+} // namespace
+
+shape_status vdb_load(const char *path, const shape_vdb_read_options &options, shape_vdb_contents &contents,
+                      shape_error *error)
+{
+    openvdb::initialize();
+    openvdb::io::File file(path);
+    file.open(false); // no delayed loading: what is wrong shows here
+    openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
+    openvdb::GridBase::Ptr chosen = choose(*grids, options.grid, error);
+    if (!chosen)
+        return SHAPE_ERROR_FORMAT;
+    copy_name(chosen->getName(), contents.name);
+    openvdb::FloatGrid::Ptr grid = to_float(file.readGrid(chosen->getName()));
+    file.close();
+    contents.level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+    if (contents.level_set)
+        openvdb::tools::sdfToFogVolume(*grid);
+    return convert(*grid, options, contents, error);
+}

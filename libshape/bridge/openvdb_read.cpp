@@ -1,0 +1,298 @@
+// OpenVDB files from strangers: the header is checked here, the rest is read in a process of its own with limited memory,
+// which hands its bricks over through a pipe. OpenVDB trusts what a file says of itself; whatever that leads to ends with
+// that process.
+#include "shape/vdb_read.h"
+
+#include <openvdb/version.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include "bridge/openvdb_grid.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define VDB_SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define VDB_SANITIZED 1
+#endif
+#endif
+
+namespace
+{
+
+// What goes through the pipe before the table, the values and their ranges.
+struct Message {
+    shape_error error;
+    shape_vdb_contents contents; // .grid is not used
+    shape_grid grid;             // neither are its pointers
+};
+
+// --- the other process ---
+
+// Address space beyond what the process has already. The sanitizers need terabytes of it.
+void limit_memory(size_t bytes)
+{
+#if !defined(VDB_SANITIZED)
+    unsigned long long pages = 0;
+    FILE *statm = std::fopen("/proc/self/statm", "r");
+    if (!statm)
+        return;
+    int read = std::fscanf(statm, "%llu", &pages);
+    std::fclose(statm);
+    const rlim_t spare = rlim_t(64) << 20;
+    struct rlimit limit;
+    if (read != 1 || getrlimit(RLIMIT_AS, &limit))
+        return;
+    rlim_t wanted = rlim_t(pages) * rlim_t(sysconf(_SC_PAGESIZE)) + bytes + spare;
+    if (wanted < limit.rlim_cur)
+        limit.rlim_cur = wanted;
+    setrlimit(RLIMIT_AS, &limit);
+#else
+    (void)bytes;
+#endif
+}
+
+bool send(int to, const void *bytes, size_t size)
+{
+    const char *at = static_cast<const char *>(bytes);
+    while (size) {
+        ssize_t sent = write(to, at, size < (size_t(1) << 30) ? size : size_t(1) << 30);
+        if (sent < 0 && errno == EINTR)
+            continue;
+        if (sent <= 0)
+            return false;
+        at += sent;
+        size -= size_t(sent);
+    }
+    return true;
+}
+
+size_t cells_of(const shape_grid &grid)
+{
+    return size_t(grid.bricks[0]) * size_t(grid.bricks[1]) * size_t(grid.bricks[2]);
+}
+
+void load(const char *path, const shape_vdb_read_options &options, Message &message)
+{
+    shape_error *error = &message.error;
+    try {
+        tbb::global_control alone(tbb::global_control::max_allowed_parallelism,
+                                  1); // threads do not survive a fork
+        vdb_load(path, options, message.contents, error);
+    } catch (const std::bad_alloc &) {
+        shape_error_set(error, SHAPE_ERROR_LIMIT,
+                        "reading it takes more than %zu bytes (damaged, or use --max-memory)",
+                        options.max_bytes);
+    } catch (const std::exception &problem) {
+        shape_error_set(error, SHAPE_ERROR_FORMAT, "OpenVDB cannot read it: %.300s", problem.what());
+    } catch (...) {
+        shape_error_set(error, SHAPE_ERROR_FORMAT, "OpenVDB cannot read it");
+    }
+    for (char *c = error->text; error->status && *c; c++) // names in a damaged file may hold anything
+        *c = static_cast<unsigned char>(*c) < 0x20 || *c == 0x7f ? '?' : *c;
+}
+
+[[noreturn]] void be_the_reader(const char *path, const shape_vdb_read_options &options, int to)
+{
+    int quiet = open("/dev/null", O_WRONLY);
+    if (quiet >= 0)
+        dup2(quiet, STDERR_FILENO); // OpenVDB's own warnings, and the runtime's last words
+    struct rlimit none = {0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    limit_memory(options.max_bytes);
+    static Message message; // zero
+    load(path, options, message);
+    bool sent;
+    if (message.error.status) {
+        sent = send(to, &message, sizeof message);
+    } else {
+        const shape_grid &grid = *message.contents.grid;
+        message.grid = grid;
+        sent = send(to, &message, sizeof message) &&
+               send(to, grid.table, cells_of(grid) * sizeof *grid.table) &&
+               send(to, grid.values, grid.brick_count * SHAPE_GRID_BRICK_POINTS * sizeof *grid.values) &&
+               send(to, grid.low, grid.brick_count * sizeof *grid.low) &&
+               send(to, grid.high, grid.brick_count * sizeof *grid.high);
+    }
+    _exit(sent ? 0 : 1);
+}
+
+// --- this process ---
+
+bool receive(int from, void *bytes, size_t size)
+{
+    char *at = static_cast<char *>(bytes);
+    while (size) {
+        ssize_t got = read(from, at, size < (size_t(1) << 30) ? size : size_t(1) << 30);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return false;
+        at += got;
+        size -= size_t(got);
+    }
+    return true;
+}
+
+// Even the reader is not trusted further than necessary: its memory may be damaged.
+bool is_sane(const Message &m, size_t max_bytes)
+{
+    const shape_grid &g = m.grid;
+    for (int a = 0; a < 3; a++)
+        if (g.points[a] < 2 || g.points[a] > SHAPE_GRID_MAX_SIDE ||
+            g.bricks[a] != (g.points[a] - 1 + SHAPE_GRID_BRICK - 1) / SHAPE_GRID_BRICK)
+            return false;
+    return cells_of(g) <= max_bytes / sizeof *g.table && g.brick_count >= 1 &&
+           g.brick_count <= max_bytes / (SHAPE_GRID_BRICK_POINTS * sizeof *g.values) + 1;
+}
+
+bool receive_grid(int from, shape_grid *grid)
+{
+    size_t cells = cells_of(*grid), bricks = grid->brick_count;
+    grid->table = static_cast<uint32_t *>(std::malloc(cells * sizeof *grid->table));
+    grid->values = static_cast<float *>(std::malloc(bricks * SHAPE_GRID_BRICK_POINTS * sizeof *grid->values));
+    grid->low = static_cast<float *>(std::malloc(bricks * sizeof *grid->low));
+    grid->high = static_cast<float *>(std::malloc(bricks * sizeof *grid->high));
+    if (!grid->table || !grid->values || !grid->low || !grid->high)
+        return false;
+    if (!receive(from, grid->table, cells * sizeof *grid->table) ||
+        !receive(from, grid->values, bricks * SHAPE_GRID_BRICK_POINTS * sizeof *grid->values) ||
+        !receive(from, grid->low, bricks * sizeof *grid->low) ||
+        !receive(from, grid->high, bricks * sizeof *grid->high))
+        return false;
+    for (size_t i = 0; i < cells; i++)
+        if (grid->table[i] >= bricks)
+            return false;
+    return true;
+}
+
+shape_status damaged(const char *path, shape_error *error)
+{
+    return shape_error_set(error, SHAPE_ERROR_FORMAT,
+                           "%s: OpenVDB cannot read it (the file is damaged or cut short)", path);
+}
+
+shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_contents *contents,
+                     shape_error *error)
+{
+    static thread_local Message message;
+    std::memset(&message, 0, sizeof message);
+    if (!receive(from, &message, sizeof message))
+        return damaged(path, error);
+    message.error.text[sizeof message.error.text - 1] = 0;
+    if (message.error.status)
+        return shape_error_set(error, message.error.status, "%s: %s", path, message.error.text);
+    if (!is_sane(message, max_bytes))
+        return damaged(path, error);
+    shape_grid *grid = static_cast<shape_grid *>(std::calloc(1, sizeof *grid));
+    if (!grid)
+        return shape_error_memory(error);
+    *grid = message.grid;
+    grid->table = nullptr;
+    grid->values = grid->low = grid->high = nullptr;
+    grid->users = 1;
+    if (!receive_grid(from, grid)) {
+        shape_grid_release(grid);
+        return damaged(path, error);
+    }
+    *contents = message.contents;
+    contents->name[SHAPE_NAME_MAX] = 0;
+    contents->grid = grid;
+    return SHAPE_OK;
+}
+
+shape_status read_apart(const char *path, const char *shown, const shape_vdb_read_options *options,
+                        shape_vdb_contents *contents, shape_error *error)
+{
+    int ends[2];
+    if (pipe(ends))
+        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "%s: no pipe to read it through: %s", shown,
+                               std::strerror(errno));
+    std::fflush(nullptr);
+    pid_t reader = fork();
+    if (reader < 0) {
+        close(ends[0]);
+        close(ends[1]);
+        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "%s: no process to read it in: %s", shown,
+                               std::strerror(errno));
+    }
+    if (!reader) {
+        close(ends[0]);
+        be_the_reader(path, *options, ends[1]);
+    }
+    close(ends[1]);
+    shape_status status = collect(shown, ends[0], options->max_bytes, contents, error);
+    close(ends[0]); // a reader that still writes ends by it
+    int how;
+    while (waitpid(reader, &how, 0) < 0 && errno == EINTR) {
+    }
+    return status;
+}
+
+uint32_t get_u32(const unsigned char *p)
+{
+    return uint32_t(p[0]) | uint32_t(p[1]) << 8 | uint32_t(p[2]) << 16 | uint32_t(p[3]) << 24;
+}
+
+// The first bytes: 64 bits of magic, then the format's version. A wrong version would open, and hold no grid.
+shape_status check_header(const char *path, const unsigned char *bytes, size_t size, shape_error *error)
+{
+    if (!shape_vdb_is(bytes, size))
+        return shape_error_set(error, SHAPE_ERROR_FORMAT, "%s: no OpenVDB file", path);
+    if (size < 12)
+        return shape_error_set(error, SHAPE_ERROR_FORMAT, "%s: an OpenVDB file cut short", path);
+    uint32_t version = get_u32(bytes + 8);
+    if (version < openvdb::OPENVDB_FILE_VERSION_ROOTNODE_MAP || version > openvdb::OPENVDB_FILE_VERSION)
+        return shape_error_set(
+            error, SHAPE_ERROR_FORMAT,
+            "%s: an OpenVDB file of version %u; %u to %u can be read (write it again with another)", path,
+            version, unsigned(openvdb::OPENVDB_FILE_VERSION_ROOTNODE_MAP),
+            unsigned(openvdb::OPENVDB_FILE_VERSION));
+    return SHAPE_OK;
+}
+
+} // namespace
+
+extern "C" shape_vdb_read_options shape_vdb_read_defaults(void)
+{
+    shape_vdb_read_options options = {nullptr, size_t(4) << 30, false, nullptr};
+    return options;
+}
+
+extern "C" bool shape_vdb_is(const void *bytes, size_t size)
+{
+    return size >= 8 && !std::memcmp(bytes, " BDV\0\0\0\0", 8);
+}
+
+extern "C" shape_status shape_vdb_read(const char *path, const shape_vdb_read_options *options,
+                                       shape_vdb_contents *contents, shape_error *error)
+{
+    unsigned char first[12];
+    const char *shown = options->shown ? options->shown : path;
+    std::memset(contents, 0, sizeof *contents);
+    FILE *file = std::fopen(path, "rb");
+    if (!file)
+        return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read: %s", shown, std::strerror(errno));
+    size_t size = std::fread(first, 1, sizeof first, file);
+    bool wrong = std::ferror(file) || std::fseek(file, 0, SEEK_END);
+    long end = wrong ? -1 : std::ftell(file);
+    std::fclose(file);
+    if (end < 0)
+        return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read it", shown);
+    shape_status status = check_header(shown, first, size, error);
+    if (!status)
+        status = read_apart(path, shown, options, contents, error);
+    contents->file_bytes = size_t(end);
+    return status;
+}

@@ -1,0 +1,42 @@
+/* OpenVDB files as voxel grids [target shape_openvdb]. */
+#ifndef SHAPE_VDB_READ_H
+#define SHAPE_VDB_READ_H
+
+#include "shape/grid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct shape_vdb_read_options {
+    const char *grid;  /* which grid, by its name; NULL: the only scalar one */
+    size_t max_bytes;  /* that reading may take; default 4 GiB */
+    bool y_up;         /* the file's y is up; default false: its z becomes our y */
+    const char *shown; /* what errors call the file; NULL: its path */
+} shape_vdb_read_options;
+
+typedef struct shape_vdb_contents {
+    shape_grid *grid;              /* the caller releases it, or gives it to a set */
+    shape_frame frame;             /* voxels of *grid to metres */
+    char name[SHAPE_NAME_MAX + 1]; /* of the grid in the file */
+    bool level_set;                /* it was one, and its inside became density */
+    size_t file_bytes;
+} shape_vdb_contents;
+
+shape_vdb_read_options shape_vdb_read_defaults(void);
+
+/* Reads one scalar grid (float, double, or stored as half) with an affine transform from an untrusted file. A level set
+ * becomes a fog volume: 0 at its surface to 1 inside its band. Inactive voxels count as 0, and so do negative ones.
+ * OpenVDB does not stand up to damaged files, so it runs in a process of its own, whose memory is limited. Errors, each
+ * with the file's name: SHAPE_ERROR_IO, SHAPE_ERROR_FORMAT (no OpenVDB file, a version or a compression that is not known,
+ * no or several scalar grids, nothing in it, NaN, damaged), SHAPE_ERROR_LIMIT. Not to be called from two threads at once. */
+shape_status shape_vdb_read(const char *path, const shape_vdb_read_options *options,
+                            shape_vdb_contents *contents, shape_error *error);
+
+/* Whether the bytes begin as those of an OpenVDB file. */
+bool shape_vdb_is(const void *bytes, size_t size);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
