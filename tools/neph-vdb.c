@@ -1,0 +1,162 @@
+/* neph-vdb: clouds to OpenVDB, NanoVDB or raw volumes. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+#include "cli_picture.h"
+#include "shape/file.h"
+#include "shape/neph.h"
+#include "vdb.h"
+
+enum { MAX_SET_FILE = 0x40000000 };
+
+vdb_values vdb = {.resolution = 256, .max_memory = 4294967296, .light_resolution = 48};
+
+static const cli_option size_options[] = {
+    {"voxel-size", 0, CLI_NUMBER, &vdb.voxel_size, 1e-9, 1e9, "L", "edge of a voxel, metres",
+     &vdb.voxel_size_given, false},
+    {"resolution", 0, CLI_INTEGER, &vdb.resolution, 1, SHAPE_VOXEL_MOST, "N",
+     "voxels along the longest side of the bounds [256]", &vdb.resolution_given, false},
+    {"error", 0, CLI_NUMBER, &vdb.error, 1e-4, 1, "E",
+     "choose the voxels so that interpolated density is off by no more (root mean square)", &vdb.error_given,
+     false},
+    {"max-memory", 0, CLI_INTEGER, &vdb.max_memory, 1048576, 1e15, "BYTES",
+     "refuse what would need more, before any work [4294967296]", NULL, true},
+    {0}};
+
+static const cli_option value_options[] = {
+    {"ramp", 0, CLI_NUMBER, &vdb.ramp, 0.01, 1e6, "V",
+     "uniform clouds: 0 at the surface to 1 so many voxels inside [none]", &vdb.ramp_given, false},
+    {"values", 0, CLI_CHOICE, &vdb.values, 0, 0, "density|extinction",
+     "the field's density, or that times extinction, 1/m [density]", NULL, false},
+    {"grids", 0, CLI_TEXT, &vdb.grids, 0, 0, "A,B,...",
+     "more grids: light, sdf, profile, detail_type, density_scale [none]", NULL, false},
+    {"each", 0, CLI_FLAG, &vdb.each, 0, 0, NULL,
+     "one grid a cloud, density_NAME [one grid for all, density]", NULL, false},
+    {"light-resolution", 0, CLI_INTEGER, &vdb.light_resolution, 2, 256, "N",
+     "cells of the light grid's longest side [48]", &vdb.light_resolution_given, false},
+    {"sun", 0, CLI_PAIR, cli_picture_values.sun, 0, 0, "AZIMUTH,HEIGHT",
+     "of the light: where the sun stands, degrees; azimuth from +z towards +x [60,40]",
+     &cli_picture_values.sun_given, false},
+    {"sun-irradiance", 0, CLI_VECTOR, cli_picture_values.sun_irradiance, 0, 1e9, "R,G,B",
+     "of the light: on a plane that faces the sun [pi,pi,pi]", &cli_picture_values.sun_irradiance_given, false},
+    {"sky", 0, CLI_TEXT, &cli_picture_values.sky, 0, 0, "none|R,G,B|clear",
+     "of the light: black, one radiance, or a clear day's [clear]", &cli_picture_values.sky_given, false},
+    {0}};
+
+static const cli_option file_options[] = {
+    {"format", 0, CLI_CHOICE, &vdb.format, 0, 0, "vdb|nvdb|raw",
+     "what is written [by the output's suffix; to standard output: vdb]", &vdb.format_given, true},
+    {"half", 0, CLI_FLAG, &vdb.half, 0, 0, NULL, "16 bits a value [32]", NULL, false},
+    {"up", 0, CLI_CHOICE, &vdb.up, 0, 0, "z|y", "which axis points up: z for Blender, y for engines [z]", NULL,
+     false},
+    {"header", 0, CLI_FLAG, &vdb.header, 0, 0, NULL,
+     "raw: begin by the three sizes, 32 bits each [the sidecar alone has them]", NULL, false},
+    {0}};
+
+static const cli_group groups[] = {
+    {"Voxels", size_options}, {"Values", value_options}, {"File", file_options}, {0}};
+
+static const cli_program program = {
+    .name = "neph-vdb",
+    .arguments = "IN.neph",
+    .about = "Writes clouds as a volume: OpenVDB (.vdb), NanoVDB (.nvdb) or plain numbers (.raw with a sidecar\n"
+             ".json). The grid is a fog volume named density, in metres.",
+    .examples = "  neph-vdb cumulus.neph -o cumulus.vdb                           for Blender\n"
+                "  neph-vdb cumulus.neph --up y --resolution 512 --half -o cumulus.nvdb\n"
+                "  neph-vdb cumulus.neph --error 0.1 --grids sdf,profile,light -o cumulus.vdb\n",
+    .min_arguments = 1,
+    .max_arguments = 1,
+    .groups = groups};
+
+static const char *suffix_of(const char *path)
+{
+    const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
+    return dot && (!slash || dot > slash) ? dot : "";
+}
+
+static bool is_volume_suffix(const char *suffix)
+{
+    return !strcmp(suffix, ".vdb") || !strcmp(suffix, ".nvdb") || !strcmp(suffix, ".raw");
+}
+
+/* OpenVDB's and NanoVDB's magic numbers, little-endian. */
+static bool is_volume(const unsigned char *bytes, size_t size)
+{
+    return size >= 8 && (!memcmp(bytes, " BDV\0\0\0\0", 8) || !memcmp(bytes, "NanoVDB", 7));
+}
+
+static bool is_set(const unsigned char *bytes, size_t size)
+{
+    return size >= 4 && !memcmp(bytes, "\x89NPH", 4);
+}
+
+static vdb_format choose_format(const cli_common *common)
+{
+    if (vdb.format_given)
+        return (vdb_format)vdb.format;
+    if (!strcmp(common->output, "-"))
+        return VDB_FORMAT_VDB;
+    const char *suffix = suffix_of(common->output);
+    if (!strcmp(suffix, ".vdb"))
+        return VDB_FORMAT_VDB;
+    if (!strcmp(suffix, ".nvdb"))
+        return VDB_FORMAT_NVDB;
+    if (!strcmp(suffix, ".raw"))
+        return VDB_FORMAT_RAW;
+    cli_wrong("-o %s: the suffix is none of .vdb, .nvdb, .raw (or name a --format)", common->output);
+    return VDB_FORMAT_VDB;
+}
+
+static void check_command(vdb_format format, const cli_common *common)
+{
+    if (vdb.voxel_size_given + vdb.resolution_given + vdb.error_given > 1)
+        cli_wrong("--voxel-size, --resolution and --error all choose the voxels (give one of them)");
+    if (vdb.ramp_given && vdb.error_given)
+        cli_wrong("--ramp --error: a ramp is not the field that --error measures (give one of them)");
+    if (format != VDB_FORMAT_RAW && vdb.header)
+        cli_wrong("--header: has no meaning but for raw");
+    if (format == VDB_FORMAT_RAW && (vdb.grids || vdb.each))
+        cli_wrong("--grids --each: a raw file holds one grid (write a .vdb or .nvdb)");
+    if (format == VDB_FORMAT_RAW && !vdb.header && !strcmp(common->output, "-"))
+        cli_wrong("raw to standard output has no sidecar to say its size (give --header, or a file with -o)");
+}
+
+/* Volumes go the other way. */
+static void read_volume(const char *path)
+{
+    cli_fail("%s: is a volume, and this version writes volumes only (give a .neph)", path);
+}
+
+static shape_set *read_set(const char *path, const unsigned char *bytes, size_t size)
+{
+    shape_error error;
+    shape_set *set;
+    if (shape_neph_decode(bytes, size, &set, &error))
+        cli_fail("%s: %s", strcmp(path, "-") ? path : "standard input", error.text);
+    cli_note_input(path, bytes, size);
+    return set;
+}
+
+int main(int argc, char **argv)
+{
+    cli_common common;
+    shape_error error;
+    unsigned char *bytes;
+    size_t size;
+    cli_parse(&program, argc, argv, &common);
+    const char *path = common.arguments[0];
+    cli_check(shape_file_read(path, MAX_SET_FILE, &bytes, &size, &error), &error);
+    if (is_volume(bytes, size) || (is_volume_suffix(suffix_of(path)) && !is_set(bytes, size))) {
+        read_volume(path);
+    } else {
+        vdb_format format = choose_format(&common);
+        check_command(format, &common);
+        shape_set *set = read_set(path, bytes, size);
+        vdb_write_volume(&common, set, format);
+        shape_set_destroy(set);
+    }
+    free(bytes);
+    return cli_finish(&common);
+}
