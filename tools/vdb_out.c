@@ -154,8 +154,9 @@ static void say_grid(const char *name, shape_vdb_grid *grid)
     shape_error error;
     shape_vdb_summary s;
     cli_check(shape_vdb_summarise(grid, &s, &error), &error);
-    cli_say("%s: %llu voxels filled, %zu leaves, %.1f MB", name, (unsigned long long)s.active, s.leaves,
-            1e-6 * (double)s.bytes);
+    if (s.active) /* else encoding says so */
+        cli_say("%s: %llu voxels filled, %zu leaves, %.1f MB", name, (unsigned long long)s.active, s.leaves,
+                1e-6 * (double)s.bytes);
 }
 
 static shape_lightvoxels make_light(const shape_set *set, const shape_volume *volume)
