@@ -1,5 +1,5 @@
 # neph-vdb, writing: formats, options, sizes, refusals: one clear line, exit 1, no output file. $1: programs, $2: source.
-# vdb_print (Debian: libopenvdb-tools) is a reader that is not ours.
+# vdb_print and nanovdb_validate (Debian: libopenvdb-tools, libnanovdb-tools) are readers that are not ours.
 set -eu
 programs=$(cd "$1" && pwd)
 vdb=$programs/neph-vdb
@@ -33,6 +33,7 @@ refused() {
     [ -z "$(find "$tmp" -name 'none*')" ] || fail "an output is left: $*"
 }
 
+command -v nanovdb_validate > /dev/null || fail "nanovdb_validate is missing (install libnanovdb-tools)"
 command -v vdb_print > /dev/null || fail "vdb_print is missing (install libopenvdb-tools)"
 # A ball of 1 m, 10 m up: as a grammar of one puff.
 printf 'axiom X\niterations 0\nradius 1\nlength 10\nX -> X\n' > "$tmp/one.lsys"
@@ -96,6 +97,11 @@ grep -q "voxels of .* keep the error at 0\.[01].*, within 0\.2" "$tmp/said" || f
 [ "$(head -c 7 "$tmp/a.nvdb")" = NanoVDB ] || fail "no NanoVDB file"
 "$vdb" -q "$tmp/cloud.neph" --resolution 40 --half -o "$tmp/b.nvdb"
 [ "$(wc -c < "$tmp/b.nvdb")" -lt "$(wc -c < "$tmp/a.nvdb")" ] || fail "--half does not make a NanoVDB file smaller"
+"$vdb" -q "$tmp/cloud.neph" --resolution 40 --grids light,sdf -o "$tmp/c.nvdb"
+nanovdb_validate "$tmp/a.nvdb" "$tmp/b.nvdb" "$tmp/c.nvdb" || fail "NanoVDB's own check refuses a file"
+# the same number of voxels as OpenVDB counts
+voxels=$(vdb_print -l "$tmp/a.vdb" | sed -n 's/.*Number of active voxels: *//p' | tr -d ,)
+nanovdb_print "$tmp/a.nvdb" | grep -q "float *FOG .* $voxels " || fail "not $voxels voxels: $(nanovdb_print "$tmp/a.nvdb")"
 "$vdb" -q "$tmp/one.neph" --resolution 20 -o "$tmp/a.raw"
 [ "$(wc -c < "$tmp/a.raw")" = 32000 ] || fail "a.raw is not 20^3 floats"
 "$vdb" -q "$tmp/one.neph" --resolution 20 --half -o "$tmp/b.raw"

@@ -120,7 +120,8 @@ static void check_equal(const shape_set *set, bool z_up)
                                                     shape_vec3_make((float)p.x, (float)p.y, (float)p.z));
                 float value = shape_vdb_value(f.grid, i);
                 if (value != density)
-                    fail_msg("voxel %d %d %d: %.9g, not %.9g", i[0], i[1], i[2], (double)value, (double)density);
+                    fail_msg("voxel %d %d %d: %.9g, not %.9g", i[0], i[1], i[2], (double)value,
+                             (double)density);
                 some += density > 0;
             }
     assert_true(some > 100);
@@ -185,7 +186,8 @@ static void test_ramp(void **state)
     for (i[0] = -1; i[0] <= f.lattice.size[0]; i[0]++)
         for (i[1] = -1; i[1] <= f.lattice.size[1]; i[1]++)
             for (i[2] = -1; i[2] <= f.lattice.size[2]; i[2]++) {
-                shape_dvec3 p = shape_frame_point(&f.volume->clouds[0].inverse, shape_voxel_point(&f.lattice, i));
+                shape_dvec3 p =
+                    shape_frame_point(&f.volume->clouds[0].inverse, shape_voxel_point(&f.lattice, i));
                 double depth = 0;
                 for (size_t s = 0; s < list->sphere_count; s++) {
                     const shape_sphere *ball = &list->spheres[s];
@@ -228,7 +230,8 @@ static void test_distance(void **state)
             for (i[1] = -6; i[1] < 46; i[1]++)
                 for (i[2] = -6; i[2] < 46; i[2]++) {
                     shape_dvec3 p = shape_voxel_point(&f.lattice, i);
-                    double d = sqrt((p.x - 1) * (p.x - 1) + (p.y - 2) * (p.y - 2) + (p.z - 3) * (p.z - 3)) - 2;
+                    double d =
+                        sqrt((p.x - 1) * (p.x - 1) + (p.y - 2) * (p.y - 2) + (p.z - 3) * (p.z - 3)) - 2;
                     d = fmax(-band, fmin(band, d));
                     assert_true(fabs((double)shape_vdb_value(f.grid, i) - d) < 1e-5);
                 }
@@ -371,11 +374,16 @@ static void test_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ball),     cmocka_unit_test(test_equals_field),
-        cmocka_unit_test(test_stretched), cmocka_unit_test(test_ramp),
-        cmocka_unit_test(test_distance), cmocka_unit_test(test_several),
-        cmocka_unit_test(test_threads_and_count), cmocka_unit_test(test_light),
-        cmocka_unit_test(test_error),    cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_ball),
+        cmocka_unit_test(test_equals_field),
+        cmocka_unit_test(test_stretched),
+        cmocka_unit_test(test_ramp),
+        cmocka_unit_test(test_distance),
+        cmocka_unit_test(test_several),
+        cmocka_unit_test(test_threads_and_count),
+        cmocka_unit_test(test_light),
+        cmocka_unit_test(test_error),
+        cmocka_unit_test(test_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

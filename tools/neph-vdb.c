@@ -32,15 +32,16 @@ static const cli_option value_options[] = {
      "the field's density, or that times extinction, 1/m [density]", NULL, false},
     {"grids", 0, CLI_TEXT, &vdb.grids, 0, 0, "A,B,...",
      "more grids: light, sdf, profile, detail_type, density_scale [none]", NULL, false},
-    {"each", 0, CLI_FLAG, &vdb.each, 0, 0, NULL,
-     "one grid a cloud, density_NAME [one grid for all, density]", NULL, false},
+    {"each", 0, CLI_FLAG, &vdb.each, 0, 0, NULL, "one grid a cloud, density_NAME [one grid for all, density]",
+     NULL, false},
     {"light-resolution", 0, CLI_INTEGER, &vdb.light_resolution, 2, 256, "N",
      "cells of the light grid's longest side [48]", &vdb.light_resolution_given, false},
     {"sun", 0, CLI_PAIR, cli_picture_values.sun, 0, 0, "AZIMUTH,HEIGHT",
      "of the light: where the sun stands, degrees; azimuth from +z towards +x [60,40]",
      &cli_picture_values.sun_given, false},
     {"sun-irradiance", 0, CLI_VECTOR, cli_picture_values.sun_irradiance, 0, 1e9, "R,G,B",
-     "of the light: on a plane that faces the sun [pi,pi,pi]", &cli_picture_values.sun_irradiance_given, false},
+     "of the light: on a plane that faces the sun [pi,pi,pi]", &cli_picture_values.sun_irradiance_given,
+     false},
     {"sky", 0, CLI_TEXT, &cli_picture_values.sky, 0, 0, "none|R,G,B|clear",
      "of the light: black, one radiance, or a clear day's [clear]", &cli_picture_values.sky_given, false},
     {0}};
@@ -49,8 +50,8 @@ static const cli_option file_options[] = {
     {"format", 0, CLI_CHOICE, &vdb.format, 0, 0, "vdb|nvdb|raw",
      "what is written [by the output's suffix; to standard output: vdb]", &vdb.format_given, true},
     {"half", 0, CLI_FLAG, &vdb.half, 0, 0, NULL, "16 bits a value [32]", NULL, false},
-    {"up", 0, CLI_CHOICE, &vdb.up, 0, 0, "z|y", "which axis points up: z for Blender, y for engines [z]", NULL,
-     false},
+    {"up", 0, CLI_CHOICE, &vdb.up, 0, 0, "z|y", "which axis points up: z for Blender, y for engines [z]",
+     NULL, false},
     {"header", 0, CLI_FLAG, &vdb.header, 0, 0, NULL,
      "raw: begin by the three sizes, 32 bits each [the sidecar alone has them]", NULL, false},
     {0}};
@@ -61,8 +62,9 @@ static const cli_group groups[] = {
 static const cli_program program = {
     .name = "neph-vdb",
     .arguments = "IN.neph",
-    .about = "Writes clouds as a volume: OpenVDB (.vdb), NanoVDB (.nvdb) or plain numbers (.raw with a sidecar\n"
-             ".json). The grid is a fog volume named density, in metres.",
+    .about =
+        "Writes clouds as a volume: OpenVDB (.vdb), NanoVDB (.nvdb) or plain numbers (.raw with a sidecar\n"
+        ".json). The grid is a fog volume named density, in metres.",
     .examples = "  neph-vdb cumulus.neph -o cumulus.vdb                           for Blender\n"
                 "  neph-vdb cumulus.neph --up y --resolution 512 --half -o cumulus.nvdb\n"
                 "  neph-vdb cumulus.neph --error 0.1 --grids sdf,profile,light -o cumulus.vdb\n",

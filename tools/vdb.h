@@ -24,7 +24,8 @@ extern vdb_values vdb;
 void vdb_write_volume(const cli_common *common, const shape_set *set, vdb_format format);
 /* vdb_size.c: the voxels that the options ask for, within --max-memory; ends the program where they do not fit. */
 shape_voxel_lattice vdb_choose_lattice(const cli_common *common, const shape_volume *volume,
-                                       const shape_voxel_request *requests, size_t request_count, vdb_format format);
+                                       const shape_voxel_request *requests, size_t request_count,
+                                       vdb_format format);
 /* vdb_raw.c: density as plain floats, and a sidecar that says what they are. */
 void vdb_write_raw(const cli_common *common, const shape_set *set, const shape_volume *volume,
                    const shape_voxel_lattice *lattice, const shape_voxel_request *request);

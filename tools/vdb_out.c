@@ -11,9 +11,12 @@
 static const struct kind {
     const char *name;
     shape_voxel_quantity quantity;
-} kinds[] = {{"density", SHAPE_VOXEL_DENSITY},         {"light", SHAPE_VOXEL_SAMPLE},
-             {"sdf", SHAPE_VOXEL_SDF},                 {"profile", SHAPE_VOXEL_PROFILE},
-             {"detail_type", SHAPE_VOXEL_DETAIL_TYPE}, {"density_scale", SHAPE_VOXEL_DENSITY_SCALE}};
+} kinds[] = {{"density", SHAPE_VOXEL_DENSITY},
+             {"light", SHAPE_VOXEL_SAMPLE},
+             {"sdf", SHAPE_VOXEL_SDF},
+             {"profile", SHAPE_VOXEL_PROFILE},
+             {"detail_type", SHAPE_VOXEL_DETAIL_TYPE},
+             {"density_scale", SHAPE_VOXEL_DENSITY_SCALE}};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* All grids of a file: kinds times clouds, or kinds alone. */
@@ -35,7 +38,8 @@ static void read_grids(plan *p)
             if (strlen(kinds[i].name) == length && !strncmp(kinds[i].name, text, length))
                 found = i;
         if (found < 0 || (text[length] == ',' && !text[length + 1]))
-            cli_wrong("--grids \"%s\": expected light, sdf, profile, detail_type, density_scale, separated by commas",
+            cli_wrong("--grids \"%s\": expected light, sdf, profile, detail_type, density_scale, separated "
+                      "by commas",
                       vdb.grids);
         p->wanted[found] = true;
         text += length + (text[length] == ',');
@@ -43,9 +47,10 @@ static void read_grids(plan *p)
     if (vdb.grids && !*vdb.grids)
         cli_wrong("--grids: names no grid (leave it out)");
     const cli_picture *light = &cli_picture_values;
-    if (!p->wanted[1] && (vdb.light_resolution_given || light->sun_given || light->sky_given ||
-                          light->sun_irradiance_given))
-        cli_wrong("--sun, --sun-irradiance, --sky, --light-resolution: have no meaning without --grids light");
+    if (!p->wanted[1] &&
+        (vdb.light_resolution_given || light->sun_given || light->sky_given || light->sun_irradiance_given))
+        cli_wrong(
+            "--sun, --sun-irradiance, --sky, --light-resolution: have no meaning without --grids light");
 }
 
 static void make_requests(plan *p, const shape_set *set)
@@ -197,8 +202,8 @@ static void write_grids(const cli_common *common, const shape_set *set, const sh
         say_grid(kinds[p->kind[i]].name, grid);
         cli_progress("filling", (double)(i + 1) / (double)p->count);
     }
-    cli_check(shape_vdb_encode(file, format == VDB_FORMAT_NVDB ? SHAPE_VDB_NANOVDB : SHAPE_VDB_OPENVDB, &bytes,
-                               &size, &error),
+    cli_check(shape_vdb_encode(file, format == VDB_FORMAT_NVDB ? SHAPE_VDB_NANOVDB : SHAPE_VDB_OPENVDB,
+                               &bytes, &size, &error),
               &error);
     cli_write(common, bytes, size, true);
     free(bytes);
@@ -215,7 +220,8 @@ void vdb_write_volume(const cli_common *common, const shape_set *set, vdb_format
     read_grids(&p);
     /* The error and the light look at single points and rays. */
     bool bare = !vdb.error_given && !p.wanted[1];
-    cli_check(bare ? shape_volume_create_bare(set, &volume, &error) : shape_volume_create(set, &volume, &error),
+    cli_check(bare ? shape_volume_create_bare(set, &volume, &error)
+                   : shape_volume_create(set, &volume, &error),
               &error);
     make_requests(&p, set);
     shape_voxel_lattice lattice = vdb_choose_lattice(common, volume, p.requests, p.count, format);

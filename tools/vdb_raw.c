@@ -37,8 +37,7 @@ static bool put_brick(void *context, const int32_t first[3], const float *values
     for (int32_t z = from[2]; z < to[2]; z++)
         for (int32_t y = from[1]; y < to[1]; y++)
             for (int32_t x = from[0]; x < to[0]; x++)
-                row_of(b, y, z)[x] =
-                    values[((x - first[0]) * edge + (y - first[1])) * edge + (z - first[2])];
+                row_of(b, y, z)[x] = values[((x - first[0]) * edge + (y - first[1])) * edge + (z - first[2])];
     return true;
 }
 
@@ -121,7 +120,8 @@ static char *bare_name(const char *path)
 }
 
 /* What the numbers are, for whoever reads them without this program. */
-static char *describe(const cli_common *common, const shape_set *set, const shape_voxel_lattice *l, const block *b)
+static char *describe(const cli_common *common, const shape_set *set, const shape_voxel_lattice *l,
+                      const block *b)
 {
     char made_by[SHAPE_MADE_BY_MAX + 1], *file = bare_name(common->output);
     const int32_t *n = l->size;
@@ -139,14 +139,14 @@ static char *describe(const cli_common *common, const shape_set *set, const shap
     cli_made_by(made_by);
     json_t *root = json_pack(
         "{s:s, s:s, s:s, s:[i, i, i], s:s, s:s, s:i, s:f, s:o, s:s, s:o, s:f, s:I, s:o, s:s}", "file",
-        file ? file : "", "grid", "density", "type", vdb.half ? "float16" : "float32", "size", n[0], n[1], n[2],
-        "order", "x fastest, then y, then z", "endian", "little", "offset", vdb.header ? 12 : 0, "voxel_size",
-        l->edge, "origin", three(l->origin[0], l->origin[1], l->origin[2]), "up", vdb.up ? "y" : "z", "scale",
-        three(l->edge * n[0], l->edge * n[1], l->edge * n[2]), "max", (double)most, "filled", (json_int_t)filled,
-        "medium",
+        file ? file : "", "grid", "density", "type", vdb.half ? "float16" : "float32", "size", n[0], n[1],
+        n[2], "order", "x fastest, then y, then z", "endian", "little", "offset", vdb.header ? 12 : 0,
+        "voxel_size", l->edge, "origin", three(l->origin[0], l->origin[1], l->origin[2]), "up",
+        vdb.up ? "y" : "z", "scale", three(l->edge * n[0], l->edge * n[1], l->edge * n[2]), "max",
+        (double)most, "filled", (json_int_t)filled, "medium",
         json_pack("{s:f, s:f, s:s, s:f, s:f, s:f, s:f}", "extinction", vdb.values ? 1 : (double)m->extinction,
-                  "albedo", (double)m->albedo, "phase", phases[m->phase], "g", (double)m->g, "g2", (double)m->g2,
-                  "lobe_mix", (double)m->lobe_mix, "droplet", (double)m->droplet),
+                  "albedo", (double)m->albedo, "phase", phases[m->phase], "g", (double)m->g, "g2",
+                  (double)m->g2, "lobe_mix", (double)m->lobe_mix, "droplet", (double)m->droplet),
         "made_by", made_by);
     free(file);
     char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;

@@ -97,8 +97,8 @@ static double edge_for_error(const question *q)
         *(error <= vdb.error ? &good : &bad) = edge;
     }
     if (!(good > 0))
-        cli_fail("--error %g: voxels that fit --max-memory are off by %.3g still (allow more of either)", vdb.error,
-                 best);
+        cli_fail("--error %g: voxels that fit --max-memory are off by %.3g still (allow more of either)",
+                 vdb.error, best);
     for (int round = 0; round < 3 && bad > 0; round++) {
         double middle = sqrt(good * bad), own = measured_error(q, middle);
         if (own <= vdb.error)
@@ -112,7 +112,8 @@ static double edge_for_error(const question *q)
 }
 
 shape_voxel_lattice vdb_choose_lattice(const cli_common *common, const shape_volume *volume,
-                                       const shape_voxel_request *requests, size_t request_count, vdb_format format)
+                                       const shape_voxel_request *requests, size_t request_count,
+                                       vdb_format format)
 {
     shape_error error;
     shape_voxel_lattice lattice;

@@ -46,7 +46,9 @@ Bytes::int_type Bytes::overflow(int_type c)
 
 Bytes::pos_type Bytes::seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode)
 {
-    off_type base = from == std::ios_base::beg ? 0 : from == std::ios_base::cur ? off_type(at_) : off_type(size_);
+    off_type base = from == std::ios_base::beg   ? 0
+                    : from == std::ios_base::cur ? off_type(at_)
+                                                 : off_type(size_);
     if (base + by < 0)
         return pos_type(off_type(-1));
     at_ = size_t(base + by);
@@ -104,7 +106,8 @@ std::string hex(uint64_t a, uint64_t b)
 // equal bytes, and other grids another tag.
 void tag(unsigned char *bytes, size_t size)
 {
-    constexpr size_t at = 8 + 3 * 4 + 1, length = 36; // behind magic number, three versions, the flag of offsets
+    constexpr size_t at = 8 + 3 * 4 + 1,
+                     length = 36; // behind magic number, three versions, the flag of offsets
     if (size < at + length)
         return;
     std::memset(bytes + at, '0', length);
@@ -212,7 +215,10 @@ shape_status shape_vdb_add(shape_vdb *vdb, const shape_vdb_options *options, sha
         made->grid->setName(made->name);
         made->grid->setTransform(made->transform);
         made->grid->setSaveFloatAsHalf(made->half);
-        made->grid->setGridClass(options->level_set ? openvdb::GRID_LEVEL_SET : openvdb::GRID_FOG_VOLUME);
+        // NanoVDB knows no fog volume of vectors.
+        made->grid->setGridClass(options->vector      ? openvdb::GRID_UNKNOWN
+                                 : options->level_set ? openvdb::GRID_LEVEL_SET
+                                                      : openvdb::GRID_FOG_VOLUME);
         *grid = made.get();
         vdb->grids.push_back(std::move(made));
         return SHAPE_OK;
@@ -255,7 +261,8 @@ bool shape_vdb_put_tile(void *context, const int32_t first[3], int32_t edge, flo
 {
     auto *grid = static_cast<shape_vdb_grid *>(context);
     return shape_vdb_guard(nullptr, [&] {
-               grid->piles.local().tiles.push_back({openvdb::Coord(first[0], first[1], first[2]), edge, value});
+               grid->piles.local().tiles.push_back(
+                   {openvdb::Coord(first[0], first[1], first[2]), edge, value});
                return SHAPE_OK;
            }) == SHAPE_OK;
 }
@@ -316,7 +323,8 @@ shape_status shape_vdb_encode(shape_vdb *vdb, shape_vdb_format format, unsigned 
             must_hold(*vdb);
         } catch (const std::invalid_argument &problem) {
             return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
-                                   "%s (take smaller voxels, or a cloud with something in it)", problem.what());
+                                   "%s (take smaller voxels, or a cloud with something in it)",
+                                   problem.what());
         }
         Bytes buffer;
         std::ostream out(&buffer);

@@ -82,7 +82,8 @@ static shape_status find_shape_tree(const shape_set *set, shape_volume *volume, 
     return shape_tree_build(cloud->shape_list, reach, &volume->trees[volume->tree_count++], error);
 }
 
-static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i, bool bare, shape_error *error)
+static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i, bool bare,
+                            shape_error *error)
 {
     shape_volume_cloud *cloud = &volume->clouds[i];
     cloud->frame = set->clouds[i].frame;
@@ -116,7 +117,8 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
 static bool has_noise(const shape_set *set)
 {
     for (size_t i = 0; i < set->cloud_count; i++)
-        if (set->clouds[i].field.model != SHAPE_MODEL_UNIFORM || shape_detail_is_on(&set->clouds[i].field.detail))
+        if (set->clouds[i].field.model != SHAPE_MODEL_UNIFORM ||
+            shape_detail_is_on(&set->clouds[i].field.detail))
             return true;
     return false;
 }

@@ -283,7 +283,8 @@ static shape_status sort_into_cells(cells *c, const voxel_forms *forms, float gr
             for (int32_t z = from[2]; z <= to[2]; z++)
                 for (int32_t y = from[1]; y <= to[1]; y++)
                     for (int32_t x = from[0]; x <= to[0]; x++) {
-                        size_t cell = ((size_t)z * (size_t)c->size[1] + (size_t)y) * (size_t)c->size[0] + (size_t)x;
+                        size_t cell =
+                            ((size_t)z * (size_t)c->size[1] + (size_t)y) * (size_t)c->size[0] + (size_t)x;
                         if (pass == 0)
                             c->start[cell + 2]++;
                         else

@@ -148,8 +148,9 @@ static void add_density(const voxel_job *job, size_t index, const int32_t first[
     find_u2(job, cloud, list, count, room);
     for (int i = 0; i < VOXEL_BRICK; i++)
         if (room->u2[i] <= limit)
-            room->values[i] += weight * shape_cloud_density_at(
-                                            cloud, shape_vec3_make(room->x[i], room->y[i], room->z[i]), room->u2[i]);
+            room->values[i] +=
+                weight * shape_cloud_density_at(cloud, shape_vec3_make(room->x[i], room->y[i], room->z[i]),
+                                                room->u2[i]);
 }
 
 /* The depth [m of the cloud's frame] below a metaball's surface, by first order: u = 1 / sqrt F. */
@@ -214,8 +215,7 @@ static float detail_type(const shape_volume_cloud *cloud, shape_vec3 p)
     shape_cloud plain = {.field = shape_field_defaults()};
     shape_box box = cloud->detailed ? (shape_box){{0, cloud->base, 0}, {0, 0, 0}}
                                     : shape_cloud_box(&plain, cloud->shape_list);
-    float tall = cloud->detailed ? cloud->inverse_height
-                                 : 1 / fmaxf(box.max.y - box.min.y, 1e-30f);
+    float tall = cloud->detailed ? cloud->inverse_height : 1 / fmaxf(box.max.y - box.min.y, 1e-30f);
     float height = smoothstep(((p.y - box.min.y) * tall - 0.1f) * 5);
     float billow = cloud->field.detail.billow, wisp = cloud->field.detail.wisp;
     if (!(billow > 0) && !(wisp > 0))

@@ -109,7 +109,8 @@ static void ball_form(voxel_form *f, const placing *p, const shape_sphere *s, do
     double radius = (double)s->radius * support, to_unit = 1 / radius;
     f->radius = f->thin = f->fat = (float)(radius * p->scale);
     for (int i = 0; i < 3; i++) {
-        f->c[i] = p->offset[i] + p->to[i][0] * (double)s->x + p->to[i][1] * (double)s->y + p->to[i][2] * (double)s->z;
+        f->c[i] = p->offset[i] + p->to[i][0] * (double)s->x + p->to[i][1] * (double)s->y +
+                  p->to[i][2] * (double)s->z;
         f->h[i] = f->radius;
         for (int j = 0; j < 3; j++)
             f->m[i][j] = (float)(p->back[i][j] * to_unit);
@@ -231,8 +232,8 @@ shape_status shape_voxels_lay_out(const double min[3], const double max[3], doub
         double voxels = (max[k] - min[k]) / edge;
         if (!(voxels <= SHAPE_VOXEL_MOST))
             return shape_error_set(error, SHAPE_ERROR_LIMIT,
-                                   "a voxel of %g m makes more than %d voxels a side (take a larger one)", edge,
-                                   SHAPE_VOXEL_MOST);
+                                   "a voxel of %g m makes more than %d voxels a side (take a larger one)",
+                                   edge, SHAPE_VOXEL_MOST);
         double whole = fmax(1, ceil(voxels - 1e-6));
         lattice->size[k] = (int32_t)whole;
         /* What a whole number of voxels has too much lies on both sides alike. */

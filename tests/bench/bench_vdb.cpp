@@ -22,7 +22,8 @@ constexpr double RAMP = 3;
 
 double now()
 {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 void must(shape_status status, const shape_error &error)
@@ -49,7 +50,8 @@ shape_set *make_set(size_t count, shape_model model)
     shape_random random = shape_random_seed(1, 0);
     double size = 0.4 * 2.9 * std::cbrt(35.0 / double(count));
     for (size_t i = 0; i < count; i++) {
-        shape_sphere s = {float(3.8 * shape_random_normal(&random)), float(1.7 * shape_random_normal(&random)),
+        shape_sphere s = {float(3.8 * shape_random_normal(&random)),
+                          float(1.7 * shape_random_normal(&random)),
                           float(3.7 * shape_random_normal(&random)),
                           float(std::fmin(2.9, size / std::cbrt(1 - shape_random_unit(&random))))};
         must(shape_primitives_add_sphere(list, s, &error), error);
@@ -116,8 +118,7 @@ double theirs(const shape_set *set, const shape_voxel_lattice &lattice, openvdb:
     Particles particles{&set->lists[0]};
     double start = now();
     grid = openvdb::createLevelSet<openvdb::FloatGrid>(lattice.edge, RAMP);
-    grid->transform().postTranslate(
-        openvdb::Vec3d(lattice.origin[0], lattice.origin[1], lattice.origin[2]));
+    grid->transform().postTranslate(openvdb::Vec3d(lattice.origin[0], lattice.origin[1], lattice.origin[2]));
     openvdb::tools::ParticlesToLevelSet<openvdb::FloatGrid> raster(*grid);
     raster.setRmin(0);
     raster.setRmax(1e9);
@@ -134,7 +135,8 @@ double largest_difference(const openvdb::FloatGrid &a, const openvdb::FloatGrid 
         auto accessor = other.getConstAccessor();
         for (auto value = from.cbeginValueOn(); value; ++value)
             if (value.isVoxelValue())
-                largest = std::fmax(largest, std::fabs(double(*value) - double(accessor.getValue(value.getCoord()))));
+                largest = std::fmax(largest,
+                                    std::fabs(double(*value) - double(accessor.getValue(value.getCoord()))));
             else
                 for (auto at : value.getBoundingBox())
                     largest = std::fmax(largest, std::fabs(double(*value) - double(accessor.getValue(at))));
@@ -157,10 +159,12 @@ bool compare(size_t count, int resolution)
         double b = theirs(set, lattice, reference);
         own = std::fmin(own, a), other = std::fmin(other, b), worst = std::fmin(worst, b / a);
         if (run == 0)
-            difference = largest_difference(*openvdb::gridPtrCast<openvdb::FloatGrid>(grid->grid), *reference);
+            difference =
+                largest_difference(*openvdb::gridPtrCast<openvdb::FloatGrid>(grid->grid), *reference);
         shape_vdb_destroy(file);
     }
-    printf("%zu,%d,%.1f,%.1f,%.2f,%.2f,%.2g\n", count, resolution, own, other, other / own, worst, difference);
+    printf("%zu,%d,%.1f,%.1f,%.2f,%.2f,%.2g\n", count, resolution, own, other, other / own, worst,
+           difference);
     fflush(stdout);
     shape_set_destroy(set);
     return other / own >= 3 && difference <= 1e-3;
@@ -176,8 +180,8 @@ void noise(size_t count, int resolution)
     shape_vdb_summary summary;
     double time = ours(set, resolution, 0, file, &grid, &lattice);
     must(shape_vdb_summarise(grid, &summary, &error), error);
-    printf("%zu,%d,%.0f,%llu,%.0f\n", count, resolution, time, static_cast<unsigned long long>(summary.active),
-           1e6 * time / double(summary.active));
+    printf("%zu,%d,%.0f,%llu,%.0f\n", count, resolution, time,
+           static_cast<unsigned long long>(summary.active), 1e6 * time / double(summary.active));
     fflush(stdout);
     shape_vdb_destroy(file);
     shape_set_destroy(set);

@@ -18,13 +18,14 @@ typedef struct shape_vdb_grid shape_vdb_grid;
 
 /* A grid to be. The world point of voxel i, j, k (its centre) is origin + edge (i, j, k). */
 typedef struct shape_vdb_options {
-    const char *name;  /* Blender draws a fog volume only where it is called "density" */
-    double edge;       /* of a voxel [m] */
-    double origin[3];  /* [m] */
-    bool vector;       /* three channels a voxel (Vec3f), else one (float) */
-    bool level_set;    /* class level set: `background` outside, -background inside; else fog volume, 0 outside */
-    float background;  /* of a level set: the band's half width [m], above 0 */
-    bool half;         /* 16 bits a value in the file (NanoVDB: its Fp16, blocks of 8^3 with a range of their own) */
+    const char *name; /* Blender draws a fog volume only where it is called "density" */
+    double edge;      /* of a voxel [m] */
+    double origin[3]; /* [m] */
+    bool vector;      /* three channels a voxel (Vec3f, of no class), else one (float) */
+    bool
+        level_set; /* class level set: `background` outside, -background inside; else fog volume, 0 outside */
+    float background; /* of a level set: the band's half width [m], above 0 */
+    bool half; /* 16 bits a value in the file (NanoVDB: its Fp16, blocks of 8^3 with a range of their own) */
 } shape_vdb_options;
 
 /* The caller destroys it. NULL where memory is out. */

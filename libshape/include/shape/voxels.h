@@ -29,22 +29,23 @@ typedef struct shape_voxel_lattice {
 /* What is asked for at a voxel's centre. Where several clouds overlap, densities add; of the last three the cloud counts
  * whose core is nearest. */
 typedef enum shape_voxel_quantity {
-    SHAPE_VOXEL_DENSITY = 0, /* the field's density, weighed by the cloud's extinction over the set's greatest */
-    SHAPE_VOXEL_SDF,         /* distance to the nearest bound [m], negative inside, within `band` voxels; by first
+    SHAPE_VOXEL_DENSITY =
+        0,               /* the field's density, weighed by the cloud's extinction over the set's greatest */
+    SHAPE_VOXEL_SDF,     /* distance to the nearest bound [m], negative inside, within `band` voxels; by first
                                 order where a bound is not a sphere (Taubin 1991) */
-    SHAPE_VOXEL_PROFILE,     /* 0 at the bound to 1 at the core: 1 - u of the nearest primitive */
-    SHAPE_VOXEL_DETAIL_TYPE, /* 0 wisps to 1 billows: the cloud's own blend of the two by height */
+    SHAPE_VOXEL_PROFILE, /* 0 at the bound to 1 at the core: 1 - u of the nearest primitive */
+    SHAPE_VOXEL_DETAIL_TYPE,   /* 0 wisps to 1 billows: the cloud's own blend of the two by height */
     SHAPE_VOXEL_DENSITY_SCALE, /* the cloud's extinction over the set's greatest */
-    SHAPE_VOXEL_SAMPLE         /* what `sample` gives, three channels, weighed by density where clouds overlap */
+    SHAPE_VOXEL_SAMPLE /* what `sample` gives, three channels, weighed by density where clouds overlap */
 } shape_voxel_quantity;
 
 typedef struct shape_voxel_request {
     shape_voxel_quantity quantity;
-    int cloud;   /* this one only, or -1: all */
+    int cloud;    /* this one only, or -1: all */
     double scale; /* of the density; default 1 */
-    double ramp; /* uniform clouds' density: 0 at the surface to 1 so many voxels inside; 0: none */
-    double band; /* voxels each side, of the signed distance; default 3 */
-    int threads; /* 0: all; the result does not depend on it */
+    double ramp;  /* uniform clouds' density: 0 at the surface to 1 so many voxels inside; 0: none */
+    double band;  /* voxels each side, of the signed distance; default 3 */
+    int threads;  /* 0: all; the result does not depend on it */
     /* SHAPE_VOXEL_SAMPLE: the value in a cloud at a point of its frame; called by several threads at a time. */
     void (*sample)(const void *context, size_t cloud, shape_vec3 p, float value[3]);
     const void *sample_context;
