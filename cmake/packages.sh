@@ -7,7 +7,7 @@ gcc g++ libc6-dev cmake ninja-build pkg-config
 libpopt-dev libjansson-dev libmd-dev
 libpng-dev libopenexr-dev
 libopenmesh-dev libtinygltf-dev
-libopenvdb-dev libtbb-dev libimath-dev libboost-dev
+libopenvdb-dev libnanovdb-dev libtbb-dev libimath-dev libboost-dev
 libglfw3-dev libepoxy-dev libcglm-dev
 libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
 # The last line is OpenGL, Mesa's software renderer included: pictures need no graphics card.
@@ -15,7 +15,7 @@ libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
 # To build and run the tests: the second compiler, the style, the test library, a screen without a screen.
 packages_test="
 clang libclang-rt-dev libomp-dev clang-format-14
-libcmocka-dev
+libcmocka-dev libopenvdb-tools libnanovdb-tools
 xvfb xauth xdotool x11-apps imagemagick python3
 bash zsh groff-base binutils fakeroot dpkg-dev"
 

@@ -53,7 +53,7 @@ refused 1 "cut.vdb" "$bin/neph-render" cut.vdb $small -o no.png
 [ ! -e no.png ] && [ ! -e no.neph ] || fail "a refused input left an output"
 "$bin/neph-gauss" -q --count 2 -o c.neph
 refused 2 "density-gain belongs to volumes" "$bin/neph-render" c.neph --density-gain 2 -o no.png
-refused 1 "no volume" "$bin/neph-vdb" c.neph -o no.neph
+refused 2 "the suffix is none of" "$bin/neph-vdb" c.neph -o no.neph
 
 # A ball comes back as one sphere of about its size: half of the ramp of three eighths lies outside half the density.
 "$bin/neph-vdb" "$vdb/levelset.vdb" --primitives 1 --cells 24 -o ball.neph 2>err || fail "no fit: $(cat err)"

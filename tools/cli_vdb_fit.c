@@ -14,18 +14,6 @@
 
 cli_vdb_fit_settings cli_vdb_fit_values = {.primitives = 64, .cells = 80};
 
-const cli_option cli_vdb_fit_options[] = {
-    {"primitives", 0, CLI_INTEGER, &cli_vdb_fit_values.primitives, 1, SHAPE_VOLUMEFIT_MAX_PRIMITIVES, "N",
-     "at most so many [64; with --error 1000]", &cli_vdb_fit_values.primitives_given, false},
-    {"error", 0, CLI_NUMBER, &cli_vdb_fit_values.error, 1e-6, 10, "E",
-     "as few as keep the RMSE of density, in units of its mean inside, within E [off]",
-     &cli_vdb_fit_values.error_given, false},
-    {"model", 0, CLI_CHOICE, &cli_vdb_fit_values.model, 0, 0, "uniform|spheroid",
-     "of the cloud made: plain, or with noise at its edge [uniform]", NULL, false},
-    {"cells", 0, CLI_INTEGER, &cli_vdb_fit_values.cells, 16, 512, "N",
-     "cells along the longest side that the fit looks at [80]", NULL, false},
-    {0}};
-
 static bool show_progress(void *context, double done)
 {
     (void)context;
@@ -112,12 +100,12 @@ static shape_volumefit_options fit_options(void)
     return options;
 }
 
-static void report(const cli_common *common, const char *path, const shape_set *from, const shape_set *fit,
+static void report(const cli_common *common, size_t source, const shape_set *from, const shape_set *fit,
                    const shape_volumefit_report *r)
 {
     shape_error error;
     unsigned char *bytes;
-    size_t size, source = file_size(path);
+    size_t size;
     double mean, rmse;
     if (common->quiet)
         return;
@@ -148,7 +136,7 @@ static void note_file(const char *path)
     free(bytes);
 }
 
-void cli_vdb_fit(const cli_common *common, const char *path)
+void cli_vdb_fit(const cli_common *common, const char *path, const unsigned char *bytes, size_t size)
 {
     shape_error error;
     shape_volume *volume;
@@ -156,7 +144,8 @@ void cli_vdb_fit(const cli_common *common, const char *path)
     size_t cloud;
     char name[SHAPE_NAME_MAX + 1];
     shape_volumefit_options options = fit_options();
-    shape_set *from = cli_read_volume(path), *fit = shape_set_create(&error);
+    shape_set *from = bytes ? cli_read_volume_bytes("standard input", bytes, size) : cli_read_volume(path);
+    shape_set *fit = shape_set_create(&error);
     if (!fit)
         cli_fail("%s", error.text);
     cli_check(shape_volume_create(from, &volume, &error), &error);
@@ -165,11 +154,14 @@ void cli_vdb_fit(const cli_common *common, const char *path)
         cli_fail("%s: %s", path, error.text);
     shape_volume_destroy(volume);
     cli_progress("fitting", 1);
-    note_file(path);
+    if (bytes)
+        cli_note_input(path, bytes, size);
+    else
+        note_file(path);
     cli_made_by(fit->clouds[cloud].made_by);
     fit->clouds[cloud].seed = fit->clouds[cloud].field.seed = common->seed;
     cli_write_set(common, fit);
-    report(common, path, from, fit, &r);
+    report(common, bytes ? size : file_size(path), from, fit, &r);
     shape_set_destroy(from);
     shape_set_destroy(fit);
 }

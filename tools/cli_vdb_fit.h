@@ -12,10 +12,9 @@ typedef struct cli_vdb_fit_settings {
 } cli_vdb_fit_settings;
 
 extern cli_vdb_fit_settings cli_vdb_fit_values;
-/* The rows that fill them: --primitives, --error, --model, --cells. */
-extern const cli_option cli_vdb_fit_options[];
 
-/* Reads the volume by the options of cli_volume.h, fits it, writes a .neph and says how good it is. */
-void cli_vdb_fit(const cli_common *common, const char *path);
+/* Reads the volume by the options of cli_volume.h, from the file or, where bytes is not NULL, from these; fits it, writes
+ * a .neph and says how good it is. */
+void cli_vdb_fit(const cli_common *common, const char *path, const unsigned char *bytes, size_t size);
 
 #endif

@@ -83,7 +83,8 @@ static shape_status find_shape_tree(const shape_set *set, shape_volume *volume, 
     return shape_tree_build(cloud->shape_list, reach, &volume->trees[volume->tree_count++], error);
 }
 
-static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i, shape_error *error)
+static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i, bool bare,
+                            shape_error *error)
 {
     shape_volume_cloud *cloud = &volume->clouds[i];
     cloud->frame = set->clouds[i].frame;
@@ -114,7 +115,7 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
     cloud->box = shape_cloud_box(&set->clouds[i], cloud->shape_list);
     cloud->detailed = cloud->field.model == SHAPE_MODEL_LAYER || shape_detail_is_on(&cloud->field.detail);
     shape_status status = find_list(set, volume, i, error);
-    if (!status)
+    if (!status && !bare)
         status = find_tree(set, volume, i, error);
     if (!status && cloud->detailed) {
         detail_prepare(cloud);
@@ -123,7 +124,16 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
     return status;
 }
 
-shape_status shape_volume_create(const shape_set *set, shape_volume **volume, shape_error *error)
+static bool has_noise(const shape_set *set)
+{
+    for (size_t i = 0; i < set->cloud_count; i++)
+        if (set->clouds[i].field.model != SHAPE_MODEL_UNIFORM ||
+            shape_detail_is_on(&set->clouds[i].field.detail))
+            return true;
+    return false;
+}
+
+static shape_status create(const shape_set *set, bool bare, shape_volume **volume, shape_error *error)
 {
     shape_volume *made = calloc(1, sizeof *made);
     if (!made)
@@ -132,10 +142,10 @@ shape_status shape_volume_create(const shape_set *set, shape_volume **volume, sh
     made->trees = calloc(2 * set->cloud_count + 1, sizeof *made->trees);
     made->grown = calloc(set->cloud_count + 1, sizeof *made->grown);
     shape_status status = made->clouds && made->trees && made->grown ? SHAPE_OK : shape_error_memory(error);
-    if (!status)
+    if (!status && !(bare && !has_noise(set)))
         status = shape_noise_create(&made->noise, error);
     for (size_t i = 0; i < set->cloud_count && !status; i++) {
-        status = prepare(set, made, i, error);
+        status = prepare(set, made, i, bare, error);
         made->cloud_count = i + 1;
     }
     for (size_t i = 0; i < made->cloud_count; i++) {
@@ -149,6 +159,16 @@ shape_status shape_volume_create(const shape_set *set, shape_volume **volume, sh
     }
     *volume = made;
     return SHAPE_OK;
+}
+
+shape_status shape_volume_create(const shape_set *set, shape_volume **volume, shape_error *error)
+{
+    return create(set, false, volume, error);
+}
+
+shape_status shape_volume_create_bare(const shape_set *set, shape_volume **volume, shape_error *error)
+{
+    return create(set, true, volume, error);
 }
 
 void shape_volume_destroy(shape_volume *volume)

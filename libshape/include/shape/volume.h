@@ -51,6 +51,9 @@ typedef struct shape_volume {
 /* Builds trees and noise. The set must outlive the volume and stay as it is. The caller destroys it. Reading a volume
  * is thread-safe. Errors: memory, limits, SHAPE_ERROR_ARGUMENT where a model is not made of primitives. */
 shape_status shape_volume_create(const shape_set *set, shape_volume **volume, shape_error *error);
+/* The same without what shape_voxels_fill and _count have no need of: trees, but for clouds with details, and noise where
+ * no cloud has any. For nothing else: shape_cloud_u2 finds nothing in it. */
+shape_status shape_volume_create_bare(const shape_set *set, shape_volume **volume, shape_error *error);
 void shape_volume_destroy(shape_volume *volume); /* NULL is allowed */
 
 /* u_i(p)^2 of one primitive: 1 on its surface (DESIGN: |diag(1/a) R^T (p - c)|). */
