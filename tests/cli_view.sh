@@ -106,7 +106,8 @@ refused 2 size spiral.neph --headless --size 0x8 -o x.png
 refused 2 "same point" spiral.neph --headless --eye 1,2,3 --target 1,2,3 -o x.png
 refused 2 headless spiral.neph -o x.png
 refused 1 "no-such" no-such.neph --headless -o x.png
-refused 1 neph "$source/examples/spiral.lsys" --headless -o x.png
+cp "$source/examples/spiral.lsys" text.neph
+refused 1 neph text.neph --headless -o x.png
 refused 1 "no-such-folder/view" spiral.neph --headless --size 8x8 --shaders no-such-folder -o x.png
 refused 1 folder spiral.neph --headless --size 8x8 --samples 1 -o no-such-folder/x.png
 [ ! -e x.png ] || fail "a failed command left a picture"

@@ -32,6 +32,7 @@ typedef struct shape_gl_options {
     shape_lightgrid_options light;
     size_t bake_voxels; /* of all clouds' baked grids together, at most */
     uint64_t seed;      /* of the random starts of rays; default 1 */
+    bool no_background; /* the sky lights the clouds and is not seen behind them */
     bool
         background; /* default method: draw at once by something coarse, and make the rest on a thread meanwhile */
     bool paper_lod; /* the paper's printed distance formula for its step, rather than 0.1 */
