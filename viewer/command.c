@@ -143,18 +143,19 @@ static void add_light(text_end *end, const view_state *state)
         add(end, " --sky %.9g,%.9g,%.9g", (double)sky[0], (double)sky[1], (double)sky[2]);
 }
 
-void view_command_write(const view_state *state, const view_state *base, const char *path, bool grammar,
-                        int width, int height, char *text, size_t room)
+void view_command_write(const view_state *state, const view_state *base, const view_command *command,
+                        char *text, size_t room)
 {
     static const char *const methods[] = {"default", "exact", "paper", "paper-ndt"};
     text_end end = {text, 0, room};
     text[0] = 0;
-    bool made = add_maker(&end, state, base, path, grammar);
+    bool made = add_maker(&end, state, base, command->path, command->grammar);
     if (made)
         add(&end, " -o cloud.neph\n");
     add(&end, "neph-view");
-    add_path(&end, made ? "cloud.neph" : path);
-    add(&end, " --headless --size %dx%d --method %s", width, height, methods[state->method]);
+    add_path(&end, made ? "cloud.neph" : command->path);
+    add(&end, " --headless --size %dx%d --method %s", command->size[0], command->size[1],
+        methods[state->method]);
     add_vector(&end, "eye", state->eye);
     add_vector(&end, "target", state->target);
     add(&end, " --fov %.9g --exposure %.9g", state->fov, (double)state->exposure);
@@ -173,6 +174,10 @@ void view_command_write(const view_state *state, const view_state *base, const c
     if (state->course.motion.drift[0] != 0 || state->course.motion.drift[1] != 0 ||
         state->course.motion.drift[2] != 0)
         add_vector(&end, "drift", state->course.motion.drift);
+    if (command->seed != 1)
+        add(&end, " --seed %llu", (unsigned long long)command->seed);
+    if (command->alpha)
+        add(&end, " --alpha");
     if (state->time != 0)
         add(&end, " --time %.9g", state->time);
     add(&end, " -o cloud.png\n");

@@ -16,7 +16,7 @@ namespace
 struct panel_memory {
     int cloud = 0;
     bool all_clouds = true;
-    int shot_size[2] = {1920, 1080};
+    int shot_size[2] = {0, 0}; // 0: as the window is
     bool shot_alpha = false;
 };
 panel_memory memory;
@@ -239,7 +239,8 @@ void draw_files(view_panel_wish &wish)
         return;
     ImGui::InputInt2("size", memory.shot_size);
     for (int &side : memory.shot_size)
-        side = side < 1 ? 1 : side > 16384 ? 16384 : side;
+        side = side < 0 ? 0 : side > 16384 ? 16384 : side;
+    ImGui::TextDisabled("0, 0: as the window is");
     ImGui::Checkbox("alpha, no sky", &memory.shot_alpha);
     wish.shoot = ImGui::Button("screenshot (F12)");
     wish.copy = ImGui::Button("copy the commands that make this");

@@ -179,6 +179,7 @@ static void publish(view_renderer *r, const engine *left, const engine *right, i
     p->draw_ms = ms;
     p->volume_ms = r->volume_ms;
     p->number++;
+    p->request = r->now.number;
     if (p->placed != r->placed) {
         view_shared_drop(p->placed);
         p->placed = view_shared_keep(r->placed);
@@ -334,6 +335,7 @@ static bool same_picture(const view_request *was, const view_request *is)
 {
     view_request other;
     memcpy(&other, was, sizeof other);
+    other.number = is->number;
     other.state.exposure = is->state.exposure;
     other.state.heat = is->state.heat;
     other.state.divider = is->state.divider;

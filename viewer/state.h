@@ -99,10 +99,17 @@ void view_history_merge(view_history *history, const view_state *base, const vie
 
 /* --- command.c: the commands that make what is seen --- */
 
+typedef struct view_command {
+    const char *path; /* the opened file */
+    bool grammar, alpha;
+    int size[2];
+    uint64_t seed; /* of the rays' starts */
+} view_command;
+
 /* Writes "neph-lsys ..." or "neph-edit ...", then "neph-view ...", a command a line, with the options that differ from
  * the start. Cut at `room` bytes. */
-void view_command_write(const view_state *state, const view_state *base, const char *path, bool grammar,
-                        int width, int height, char *text, size_t room);
+void view_command_write(const view_state *state, const view_state *base, const view_command *command,
+                        char *text, size_t room);
 
 #ifdef __cplusplus
 }

@@ -86,6 +86,7 @@ static void read_file(view_watch *watch, double since)
     watch->busy = true;
     pthread_mutex_unlock(&watch->mutex);
     view_source_read(watch->path, &generator, &news.contents, news.text, sizeof news.text, &error);
+    news.saved = since;
     news.milliseconds = now_ms() - since;
     publish(watch, &news);
 }

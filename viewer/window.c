@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "panel.h"
@@ -28,7 +29,9 @@ typedef struct window_state {
     view_renderer *renderer;
     view_watch *watch;
     view_shared *set, *placed;
-    uint64_t set_number, asked_number;
+    uint64_t set_number, asked_number, asks,
+        reload_ask;  /* reload_ask: the first request for a file read again; 0 */
+    double saved_ms; /* when that file was saved; 0: it has been shown */
     view_picture picture;
     char error[4096], said[640], title[512];
     float times[VIEW_TIMES];
@@ -36,6 +39,13 @@ typedef struct window_state {
     bool open, help, playing, undo, redo, home, shoot, copy, ask_anew;
     size_t primitives;
 } window_state;
+
+static double now_ms(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
 
 static window_state *state_of(GLFWwindow *window)
 {
@@ -254,15 +264,17 @@ static void hear_news(window_state *w)
     memcpy(w->base.clouds, next.clouds, sizeof next.clouds);
     w->base.cloud_count = next.cloud_count;
     w->read_ms = news.milliseconds;
+    w->saved_ms = news.saved;
+    w->reload_ask = w->asks + 1;
     if (take_set(w, news.contents.set, &error))
         snprintf(w->error, sizeof w->error, "%s", error.text);
 }
 
-static void make_command(const window_state *w, char *text, size_t room)
+static void make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room)
 {
-    int width, height;
-    glfwGetFramebufferSize(w->window, &width, &height);
-    view_command_write(&w->state, &w->base, w->job->path, w->job->grammar, width, height, text, room);
+    const view_command command = {
+        w->job->path, w->job->grammar, alpha, {size[0], size[1]}, w->job->options.seed};
+    view_command_write(&w->state, &w->base, &command, text, room);
 }
 
 /* A name that is not taken yet, in the folder that the viewer was started in. */
@@ -275,9 +287,11 @@ static void take_screenshot(window_state *w, const view_panel_wish *wish)
         if (access(path, F_OK))
             break;
     }
-    make_command(w, command, sizeof command);
-    view_renderer_shoot(w->renderer, path, wish->shoot_size[0], wish->shoot_size[1], wish->shoot_alpha,
-                        command);
+    int size[2] = {wish->shoot_size[0], wish->shoot_size[1]};
+    if (size[0] < 1 || size[1] < 1)
+        glfwGetFramebufferSize(w->window, &size[0], &size[1]);
+    make_command(w, size, wish->shoot_alpha, command, sizeof command);
+    view_renderer_shoot(w->renderer, path, size[0], size[1], wish->shoot_alpha, command);
 }
 
 static void obey(window_state *w, const view_panel_wish *wish)
@@ -296,7 +310,9 @@ static void obey(window_state *w, const view_panel_wish *wish)
         take_screenshot(w, wish);
     if (w->copy || wish->copy) {
         char command[8192];
-        make_command(w, command, sizeof command);
+        int size[2];
+        glfwGetFramebufferSize(w->window, &size[0], &size[1]);
+        make_command(w, size, false, command, sizeof command);
         glfwSetClipboardString(w->window, command);
         fputs(command, stderr);
         say(w, "copied, and written to standard error");
@@ -332,10 +348,12 @@ static void ask_picture(window_state *w)
     memcpy(&request.state, &w->state, sizeof request.state);
     request.width = width;
     request.height = height;
+    request.number = ++w->asks;
     view_renderer_ask(w->renderer, &request, w->set);
     memcpy(&w->asked, &w->state, sizeof w->state);
     w->asked_size[0] = width;
     w->asked_size[1] = height;
+    w->picture.done = false;
     w->asked_number = w->set_number;
 }
 
@@ -350,6 +368,13 @@ static void look_at_picture(window_state *w)
     if (picture.number != w->picture.number) {
         memmove(w->times, w->times + 1, (VIEW_TIMES - 1) * sizeof *w->times);
         w->times[VIEW_TIMES - 1] = (float)picture.draw_ms;
+    }
+    if (w->saved_ms > 0 && picture.request >= w->reload_ask) {
+        char text[128];
+        snprintf(text, sizeof text, "read again, shown after %.0f ms", now_ms() - w->saved_ms);
+        cli_say("%s: %s", w->job->title, text);
+        say(w, text);
+        w->saved_ms = 0;
     }
     if (strcmp(picture.text, w->picture.text) && !picture.text_is_error)
         say(w, picture.text);
@@ -548,7 +573,8 @@ shape_status view_window(view_job *job, shape_error *error)
     w->picture.doing = "";
     begin_state(w);
     w->camera = w->start = view_camera_start(&job->view, min, max);
-    w->window = open_window(job->view.width, job->view.height, job->title, NULL);
+    snprintf(w->title, sizeof w->title, "%.440s - neph-view [working]", job->title);
+    w->window = open_window(job->view.width, job->view.height, w->title, NULL);
     shape_status status = w->window ? show(w, error) : no_window("no window with OpenGL 3.3", error);
     if (w->window)
         glfwDestroyWindow(w->window);
