@@ -53,11 +53,19 @@ const shape_set *view_shared_set(const view_shared *shared)
     return shared->set;
 }
 
+/* A set as it is seen, ready to be drawn. It goes with the last engine that has it. */
+typedef struct scene {
+    view_shared *placed;
+    shape_volume *volume;
+    int uses;
+} scene;
+
 /* One renderer and how far it is. */
 typedef struct engine {
     shape_gl_renderer *gl;
-    int method;
-    bool lit;        /* has the present volume and light */
+    scene *scene; /* what it has loaded */
+    int method, resolution;
+    bool lit;        /* that is the present one, under the present light */
     double pixel_ms; /* of the last picture */
 } engine;
 
@@ -80,8 +88,8 @@ struct view_renderer {
     view_picture picture;
     /* The thread's own. */
     view_request now;
-    view_shared *set, *placed;
-    shape_volume *volume;
+    view_shared *set;
+    scene *scene;
     engine quick, full, other;
     int sample; /* the next to draw */
     double changed;
@@ -180,43 +188,60 @@ static void publish(view_renderer *r, const engine *left, const engine *right, i
     p->volume_ms = r->volume_ms;
     p->number++;
     p->request = r->now.number;
-    if (p->placed != r->placed) {
+    if (p->placed != r->scene->placed) {
         view_shared_drop(p->placed);
-        p->placed = view_shared_keep(r->placed);
+        p->placed = view_shared_keep(r->scene->placed);
     }
     pthread_mutex_unlock(&r->mutex);
     r->next_target = (r->next_target + 1) % TARGETS;
     r->start.wake();
 }
 
+static void drop_scene(scene *old)
+{
+    if (!old || --old->uses)
+        return;
+    shape_volume_destroy(old->volume);
+    view_shared_drop(old->placed);
+    free(old);
+}
+
 static void free_engine(engine *e)
 {
     shape_gl_destroy(e->gl);
+    drop_scene(e->scene);
     memset(e, 0, sizeof *e);
 }
 
-/* Makes an engine ready for the present volume and light. */
-static shape_status light_engine(view_renderer *r, engine *e, int method, int resolution, size_t voxels,
-                                 shape_error *error)
+/* Makes an engine ready for the present scene and light. The quick one makes coarse grids and waits for them; the others
+ * make fine ones, on a thread where they are of the default method. */
+static shape_status light_engine(view_renderer *r, engine *e, int method, shape_error *error)
 {
+    bool quick = e == &r->quick;
+    int resolution = quick ? QUICK_LIGHT : r->now.state.light_grid;
     shape_status status = SHAPE_OK;
-    if (e->gl && e->method != method)
+    if (e->gl && (e->method != method || e->resolution != resolution))
         free_engine(e);
     if (e->lit)
         return SHAPE_OK;
-    if (e->gl && voxels != QUICK_VOXELS)
-        free_engine(e); /* the light's resolution may be another */
     if (!e->gl) {
         shape_gl_options options = r->start.options;
         options.method = (shape_gl_method)method;
         options.light.resolution = resolution;
-        options.bake_voxels = voxels;
+        options.background = !quick;
+        if (quick)
+            options.bake_voxels = QUICK_VOXELS;
         status = shape_gl_create(&options, &e->gl, error);
         e->method = method;
+        e->resolution = resolution;
     }
     shape_light light = view_state_light(&r->now.state);
-    if (!status)
-        status = shape_gl_load(e->gl, r->volume, error);
+    if (!status && e->scene != r->scene) {
+        status = shape_gl_load(e->gl, r->scene->volume, error);
+        drop_scene(e->scene);
+        e->scene = r->scene;
+        e->scene->uses++;
+    }
     if (!status)
         status = shape_gl_light(e->gl, &light, error);
     if (status)
@@ -229,10 +254,9 @@ static shape_status light_engine(view_renderer *r, engine *e, int method, int re
 static shape_status light_full(view_renderer *r, shape_error *error)
 {
     const view_state *s = &r->now.state;
-    size_t voxels = r->start.options.bake_voxels;
-    shape_status status = light_engine(r, &r->full, s->method, s->light_grid, voxels, error);
+    shape_status status = light_engine(r, &r->full, s->method, error);
     if (!status && s->split)
-        status = light_engine(r, &r->other, s->other_method, s->light_grid, voxels, error);
+        status = light_engine(r, &r->other, s->other_method, error);
     return status;
 }
 
@@ -240,33 +264,65 @@ static shape_status light_full(view_renderer *r, shape_error *error)
 static int coarseness(const view_renderer *r, const engine *e)
 {
     double pixels = (double)r->now.width * (double)r->now.height;
-    int by = (int)ceil(sqrt(pixels * e->pixel_ms / BUDGET_MS));
-    return by < 1 ? 1 : by > 6 ? 6 : by;
+    int by = (int)ceil(sqrt(pixels * e->pixel_ms / BUDGET_MS)), most = e->method == SHAPE_GL_DEFAULT ? 3 : 6;
+    return by < 1 ? 1 : by > most ? most : by;
 }
 
 static shape_status draw_engine(view_renderer *r, engine *e, int width, int height, int sample,
                                 shape_error *error)
 {
     shape_view view = view_state_view(&r->now.state, width, height);
+    bool moving = sample < 0;
     double start = now_ms();
-    shape_status status = shape_gl_draw(e->gl, &view, sample, error);
+    shape_status status =
+        moving ? shape_gl_draw_moving(e->gl, &view, error) : shape_gl_draw(e->gl, &view, sample, error);
     shape_gl_finish();
-    double baked = sample ? 0 : shape_gl_get_costs(e->gl).bake_ms;
-    if (e->pixel_ms > 0)
-        baked = 0; /* that was an earlier picture's */
-    e->pixel_ms = fmax(now_ms() - start - baked, 0.1) / ((double)width * (double)height);
+    if (moving && e->pixel_ms > 0)
+        e->pixel_ms = fmax(now_ms() - start, 0.1) / ((double)width * (double)height);
+    else if (moving)
+        e->pixel_ms = 1e-9; /* the first one made grids too, and tells nothing */
     return status;
 }
 
-/* A picture for the moment, by the quick engine or the full one. */
+/* A picture for the moment. */
 static shape_status draw_moving(view_renderer *r, engine *e, shape_error *error)
 {
     int by = coarseness(r, e), width = (r->now.width + by - 1) / by, height = (r->now.height + by - 1) / by;
     double start = now_ms();
-    shape_status status = draw_engine(r, e, width, height, 0, error);
+    shape_status status = draw_engine(r, e, width, height, -1, error);
     r->sample = 0;
     if (!status)
         publish(r, e, NULL, width, height, now_ms() - start);
+    r->drawn = true;
+    return status;
+}
+
+/* Whether the engines that a picture at rest needs are ready. */
+static bool is_full(const view_renderer *r)
+{
+    return r->full.lit && (!r->now.state.split || r->other.lit);
+}
+
+/* Whether finer grids are still to come or to be faded in. */
+static bool is_pending(const view_renderer *r)
+{
+    return shape_gl_pending(r->full.gl) || (r->now.state.split && shape_gl_pending(r->other.gl));
+}
+
+/* While finer grids are made: a look at what has come of them, as a picture for the moment. */
+static shape_status draw_pending(view_renderer *r, shape_error *error)
+{
+    const struct timespec pause = {0, 20000000};
+    bool split = r->now.state.split;
+    double start = now_ms();
+    nanosleep(&pause, NULL);
+    shape_status status = draw_engine(r, &r->full, r->now.width, r->now.height, -1, error);
+    double ms = now_ms() - start - 20;
+    if (!status && split)
+        status = draw_engine(r, &r->other, r->now.width, r->now.height, -1, error);
+    if (!status)
+        publish(r, &r->full, split ? &r->other : NULL, r->now.width, r->now.height, ms);
+    r->sample = 0;
     r->drawn = true;
     return status;
 }
@@ -280,35 +336,34 @@ static shape_status draw_sample(view_renderer *r, shape_error *error)
     if (!status && split)
         status = draw_engine(r, &r->other, r->now.width, r->now.height, r->sample, error);
     r->sample++;
+    r->drawn = true;
+    if (shape_gl_refined(r->full.gl) || (split && shape_gl_refined(r->other.gl)))
+        r->sample = 0; /* the mean would be of two pictures */
     if (!status)
         publish(r, &r->full, split ? &r->other : NULL, r->now.width, r->now.height, ms);
-    r->drawn = true;
     return status;
 }
 
-static shape_status make_volume(view_renderer *r, shape_error *error)
+static shape_status make_scene(view_renderer *r, shape_error *error)
 {
     double start = now_ms();
     shape_set *made;
-    shape_volume *volume;
+    scene *next = calloc(1, sizeof *next);
+    if (!next)
+        return shape_error_memory(error);
+    next->uses = 1;
     shape_status status =
         view_state_set(&r->now.state, view_shared_set(r->set), r->start.morph, &made, error);
-    if (status)
-        return status;
-    status = shape_volume_create(made, &volume, error);
+    if (!status) {
+        next->placed = view_shared_make(made);
+        status = next->placed ? shape_volume_create(made, &next->volume, error) : shape_error_memory(error);
+    }
     if (status) {
-        shape_set_destroy(made);
+        drop_scene(next);
         return status;
     }
-    view_shared *placed = view_shared_make(made);
-    if (!placed) {
-        shape_volume_destroy(volume);
-        return shape_error_memory(error);
-    }
-    shape_volume_destroy(r->volume);
-    view_shared_drop(r->placed);
-    r->volume = volume;
-    r->placed = placed;
+    drop_scene(r->scene);
+    r->scene = next;
     r->volume_ms = now_ms() - start;
     return SHAPE_OK;
 }
@@ -357,7 +412,7 @@ static bool adopt(view_renderer *r, const view_request *wish, view_shared *set)
     view_state *was = &r->now.state;
     const view_state *is = &wish->state;
     bool other_time = was->time != is->time && moves_in_time(r, is);
-    bool clouds = !r->volume || set != r->set || other_time || !same_clouds(was, is);
+    bool clouds = !r->scene || set != r->set || other_time || !same_clouds(was, is);
     bool light = clouds || !same_light(was, is);
     bool grid = was->light_grid != is->light_grid || was->method != is->method ||
                 was->other_method != is->other_method || was->split != is->split;
@@ -383,10 +438,10 @@ static bool adopt(view_renderer *r, const view_request *wish, view_shared *set)
         r->full.lit = r->other.lit = false;
     shape_error error;
     if (!clouds)
-        return r->volume != NULL;
-    if (make_volume(r, &error)) {
+        return r->scene != NULL;
+    if (make_scene(r, &error)) {
         tell(r, error.text, true);
-        return r->volume != NULL;
+        return r->scene != NULL;
     }
     tell(r, "", false);
     return true;
@@ -398,7 +453,7 @@ static shape_status draw_shot(view_renderer *r, const shot *s, shape_gl_renderer
 {
     shape_view view = view_state_view(&r->now.state, s->width, s->height);
     shape_light light = view_state_light(&r->now.state);
-    shape_status status = shape_gl_load(gl, r->volume, error);
+    shape_status status = shape_gl_load(gl, r->scene->volume, error);
     if (!status)
         status = shape_gl_light(gl, &light, error);
     for (int i = 0; i < r->now.state.samples && !status; i++) {
@@ -443,6 +498,7 @@ static void take_shot(view_renderer *r, const shot *s)
     options.method = (shape_gl_method)r->now.state.method;
     options.light.resolution = r->now.state.light_grid;
     options.no_background = s->alpha;
+    options.background = false; /* a file is drawn by the fine grids alone */
     shape_status status = shape_gl_create(&options, &gl, &error);
     if (!status) {
         status = draw_shot(r, s, gl, &error);
@@ -475,28 +531,33 @@ static void sleep_until(view_renderer *r, double ms)
 /* Whether there is anything to do but wait for a wish. */
 static bool is_idle(const view_renderer *r)
 {
-    return !r->volume || (r->drawn && r->full.lit && r->sample >= r->now.state.samples);
+    if (!r->scene)
+        return true;
+    return r->drawn && is_full(r) && r->sample >= r->now.state.samples && !is_pending(r);
 }
 
 /* One step of work, short where it can be. */
 static shape_status step(view_renderer *r, shape_error *error)
 {
     const view_state *s = &r->now.state;
-    bool full = r->full.lit && (!s->split || r->other.lit);
+    bool full = is_full(r);
     bool rests = now_ms() - r->changed > REST_MS;
     shape_status status = SHAPE_OK;
     if (!r->drawn && (!full || !rests)) {
         engine *e = r->full.lit ? &r->full : &r->quick;
-        if (e == &r->quick && !e->lit)
-            status = light_engine(r, e, SHAPE_GL_DEFAULT, QUICK_LIGHT, QUICK_VOXELS, error);
+        if (!e->lit)
+            status = light_engine(r, e, SHAPE_GL_DEFAULT, error);
         return status ? status : draw_moving(r, e, error);
     }
     if (!rests)
         return SHAPE_OK;
     if (!full) {
         say(r, "light");
-        return light_full(r, error);
+        status = light_full(r, error);
+        return status ? status : draw_pending(r, error);
     }
+    if (is_pending(r))
+        return draw_pending(r, error);
     say(r, "drawing");
     return r->sample < s->samples ? draw_sample(r, error) : SHAPE_OK;
 }
@@ -539,7 +600,7 @@ static void *render_thread(void *context)
         }
         if (fresh)
             broken = !adopt(r, wish, set);
-        if (shoot && r->volume)
+        if (shoot && r->scene)
             take_shot(r, wanted);
         if (!broken && !is_idle(r) && step(r, &error)) {
             tell(r, error.text, true);
@@ -587,9 +648,8 @@ void view_renderer_stop(view_renderer *r)
     pthread_join(r->thread, NULL);
     view_shared_drop(r->wish_set);
     view_shared_drop(r->set);
-    view_shared_drop(r->placed);
     view_shared_drop(r->picture.placed);
-    shape_volume_destroy(r->volume);
+    drop_scene(r->scene);
     pthread_cond_destroy(&r->asked);
     pthread_mutex_destroy(&r->mutex);
     free(r);

@@ -32,9 +32,9 @@ typedef struct view_picture {
     const char *doing;    /* what the thread is at: static text */
     shape_gl_costs costs; /* of the picture's renderer */
     double draw_ms, volume_ms;
-    uint64_t number;      /* grows with each picture */
-    uint64_t request;     /* the number of the request that it shows */
-    char text[512];  /* what went wrong, or what was written; empty */
+    uint64_t number;  /* grows with each picture */
+    uint64_t request; /* the number of the request that it shows */
+    char text[512];   /* what went wrong, or what was written; empty */
     bool text_is_error;
     view_shared *placed; /* the set as it is seen; the caller drops it. NULL: nothing yet */
 } view_picture;

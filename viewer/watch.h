@@ -11,8 +11,8 @@ typedef struct view_news {
     view_contents
         contents;        /* contents.set is NULL where the file had mistakes; else the caller destroys it */
     char text[4096];     /* the mistakes, one a line; empty where there are none */
-    double saved;           /* CLOCK_MONOTONIC when the file was found to be saved [ms] */
-    double milliseconds;    /* that the reading took */
+    double saved;        /* CLOCK_MONOTONIC when the file was found to be saved [ms] */
+    double milliseconds; /* that the reading took */
 } view_news;
 
 /* Begins to watch. `wake` is called from the thread when there is news. Standard input ("-") is read once and not
