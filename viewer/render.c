@@ -5,53 +5,14 @@
 #include <epoxy/gl.h>
 #include <math.h>
 #include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "shape/file.h"
-#include "view.h"
+#include "shot.h"
 
-enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50, QUICK_LIGHT = 14, QUICK_VOXELS = 250000, MAX_PATH = 4096 };
-
-struct view_shared {
-    shape_set *set;
-    atomic_int uses;
-};
-
-view_shared *view_shared_make(shape_set *set)
-{
-    view_shared *shared = malloc(sizeof *shared);
-    if (!shared) {
-        shape_set_destroy(set);
-        return NULL;
-    }
-    shared->set = set;
-    atomic_init(&shared->uses, 1);
-    return shared;
-}
-
-view_shared *view_shared_keep(view_shared *shared)
-{
-    if (shared)
-        atomic_fetch_add(&shared->uses, 1);
-    return shared;
-}
-
-void view_shared_drop(view_shared *shared)
-{
-    if (shared && atomic_fetch_sub(&shared->uses, 1) == 1) {
-        shape_set_destroy(shared->set);
-        free(shared);
-    }
-}
-
-const shape_set *view_shared_set(const view_shared *shared)
-{
-    return shared->set;
-}
+enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50, QUICK_LIGHT = 14, QUICK_VOXELS = 250000 };
 
 /* A set as it is seen, ready to be drawn. It goes with the last engine that has it. */
 typedef struct scene {
@@ -69,12 +30,6 @@ typedef struct engine {
     double pixel_ms; /* of the last picture */
 } engine;
 
-typedef struct shot {
-    char path[MAX_PATH], comment[8192];
-    int width, height;
-    bool alpha;
-} shot;
-
 struct view_renderer {
     view_render_start start;
     pthread_t thread;
@@ -84,7 +39,7 @@ struct view_renderer {
     bool stop, fresh, shoot;
     view_request wish;
     view_shared *wish_set;
-    shot wish_shot;
+    view_shot wish_shot;
     view_picture picture;
     /* The thread's own. */
     view_request now;
@@ -447,65 +402,12 @@ static bool adopt(view_renderer *r, const view_request *wish, view_shared *set)
     return true;
 }
 
-/* --- picture files --- */
-
-static shape_status draw_shot(view_renderer *r, const shot *s, shape_gl_renderer *gl, shape_error *error)
-{
-    shape_view view = view_state_view(&r->now.state, s->width, s->height);
-    shape_light light = view_state_light(&r->now.state);
-    shape_status status = shape_gl_load(gl, r->scene->volume, error);
-    if (!status)
-        status = shape_gl_light(gl, &light, error);
-    for (int i = 0; i < r->now.state.samples && !status; i++) {
-        status = shape_gl_draw(gl, &view, i, error);
-        shape_gl_finish();
-    }
-    return status;
-}
-
-static shape_status write_shot(const shot *s, float exposure, shape_gl_renderer *gl, shape_error *error)
-{
-    shape_image_format format;
-    shape_image *image;
-    shape_status status = shape_image_format_find(s->path, &format, error);
-    if (!status)
-        status = view_read_image(gl, s->width, s->height, s->alpha, &image, error);
-    if (status)
-        return status;
-    const shape_image_text text = {"nephele", s->comment};
-    shape_image_options options = shape_image_options_defaults();
-    options.exposure = exposure;
-    options.texts = &text;
-    options.text_count = 1;
-    unsigned char *bytes;
-    size_t size;
-    status = shape_image_encode(image, format, &options, &bytes, &size, error);
-    shape_image_destroy(image);
-    if (status)
-        return status;
-    status = shape_file_write(s->path, bytes, size, error);
-    free(bytes);
-    return status;
-}
-
-static void take_shot(view_renderer *r, const shot *s)
+static void take_shot(view_renderer *r, const view_shot *s)
 {
     shape_error error;
     char text[512];
-    shape_gl_renderer *gl;
     say(r, "screenshot");
-    shape_gl_options options = r->start.options;
-    options.method = (shape_gl_method)r->now.state.method;
-    options.light.resolution = r->now.state.light_grid;
-    options.no_background = s->alpha;
-    options.background = false; /* a file is drawn by the fine grids alone */
-    shape_status status = shape_gl_create(&options, &gl, &error);
-    if (!status) {
-        status = draw_shot(r, s, gl, &error);
-        if (!status)
-            status = write_shot(s, r->now.state.exposure, gl, &error);
-        shape_gl_destroy(gl);
-    }
+    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &r->start.options, &error);
     if (status)
         snprintf(text, sizeof text, "screenshot: %.480s", error.text);
     else
@@ -566,7 +468,7 @@ static void *render_thread(void *context)
 {
     view_renderer *r = context;
     view_request *wish = malloc(sizeof *wish);
-    shot *wanted = malloc(sizeof *wanted);
+    view_shot *wanted = malloc(sizeof *wanted);
     shape_error error;
     bool broken = false;
     r->start.make_current(r->start.context, true);

@@ -296,6 +296,8 @@ static void take_screenshot(window_state *w, const view_panel_wish *wish)
 
 static void obey(window_state *w, const view_panel_wish *wish)
 {
+    if (w->undo || wish->undo || w->redo || wish->redo)
+        view_history_keep(w->history, &w->state); /* a change of this very moment can be undone too */
     if (w->undo || wish->undo)
         if (!view_history_undo(w->history, &w->state))
             say(w, "nothing to undo");
