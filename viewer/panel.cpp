@@ -18,6 +18,7 @@ struct panel_memory {
     bool all_clouds = true;
     int shot_size[2] = {0, 0}; // 0: as the window is
     bool shot_alpha = false;
+    ImVec4 covered[2] = {}; // by the panel and by the help: left, top, right, bottom
 };
 panel_memory memory;
 
@@ -92,6 +93,13 @@ void turn_group(const char *group, const view_panel_input &in, int cloud)
 bool choose(const char *name, int *value, const char *words)
 {
     return ImGui::Combo(name, value, words);
+}
+
+// Where the window that is being drawn stands.
+ImVec4 window_box()
+{
+    ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    return ImVec4(low.x, low.y, low.x + size.x, low.y + size.y);
 }
 
 bool section(const char *name, bool open = false)
@@ -265,6 +273,7 @@ void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 
     draw_judging(in);
     draw_files(wish);
     ImGui::PopItemWidth();
+    memory.covered[0] = window_box();
     ImGui::End();
 }
 
@@ -298,6 +307,7 @@ void draw_help(const ImVec2 &screen)
         ImGui::SameLine(110);
         ImGui::TextUnformatted(row[1]);
     }
+    memory.covered[1] = window_box();
     ImGui::End();
 }
 
@@ -399,6 +409,7 @@ view_panel_wish view_panel_draw(const view_panel_input *input)
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     ImVec2 screen = ImGui::GetIO().DisplaySize;
+    memory.covered[0] = memory.covered[1] = ImVec4(0, 0, 0, 0);
     draw_picture(*input, screen);
     if (input->open)
         draw_panel(*input, wish, screen);
@@ -413,9 +424,16 @@ view_panel_wish view_panel_draw(const view_panel_input *input)
     return wish;
 }
 
-bool view_panel_has_mouse(void)
+bool view_panel_covers(double x, double y)
 {
-    return ImGui::GetIO().WantCaptureMouse;
+    if (ImGui::IsAnyItemActive() || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
+        return ImGui::GetIO().WantCaptureMouse;
+    // ImGui's own answer is that of the last frame's mouse, which may have been elsewhere.
+    for (const ImVec4 &box : memory.covered)
+        if (x >= static_cast<double>(box.x) && y >= static_cast<double>(box.y) &&
+            x < static_cast<double>(box.z) && y < static_cast<double>(box.w))
+            return true;
+    return false;
 }
 
 bool view_panel_has_keys(void)

@@ -40,8 +40,8 @@ void view_panel_start(struct GLFWwindow *window);
 void view_panel_stop(void);
 /* Draws the picture and all that lies over it into the current framebuffer. */
 view_panel_wish view_panel_draw(const view_panel_input *input);
-/* Whether the mouse is the panel's, and whether a text field has the keys. */
-bool view_panel_has_mouse(void);
+/* Whether a point [window coordinates] is the panel's, by what was drawn last; and whether a text field has the keys. */
+bool view_panel_covers(double x, double y);
 bool view_panel_has_keys(void);
 /* Whether a slider is held, so that the state is not worth keeping yet. */
 bool view_panel_is_busy(void);

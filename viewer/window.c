@@ -77,7 +77,7 @@ static void on_button(GLFWwindow *window, int button, int action, int modifiers)
     window_state *w = state_of(window);
     int width, height;
     glfwGetWindowSize(window, &width, &height);
-    bool press = action == GLFW_PRESS && !view_panel_has_mouse();
+    bool press = action == GLFW_PRESS && !view_panel_covers(w->mouse_x, w->mouse_y);
     bool near = w->state.split && fabs(w->mouse_x - width * (double)w->state.divider) < 8;
     if (button == GLFW_MOUSE_BUTTON_LEFT) {
         w->splitting = press && near;
@@ -90,8 +90,9 @@ static void on_button(GLFWwindow *window, int button, int action, int modifiers)
 static void on_scroll(GLFWwindow *window, double x, double y)
 {
     (void)x;
-    if (!view_panel_has_mouse())
-        view_camera_dolly(&state_of(window)->camera, pow(0.9, y));
+    window_state *w = state_of(window);
+    if (!view_panel_covers(w->mouse_x, w->mouse_y))
+        view_camera_dolly(&w->camera, pow(0.9, y));
 }
 
 static void on_control_key(window_state *w, int key, bool shift)
