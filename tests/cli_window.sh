@@ -54,8 +54,9 @@ for _ in 1 2 3; do
     until_true 20 test -s display || fail "Xvfb did not start: $(cat xvfb.log)"
     DISPLAY=:$(cat display)
     export DISPLAY
-    ! until_true 3 answers || break
+    ! until_true 10 answers || break
     kill "$screen" 2>/dev/null || true
+    wait "$screen" || true
 done
 answers || fail "no screen answers: $(cat xvfb.log)"
 
@@ -91,7 +92,12 @@ rests() { ! xdotool getwindowname "$window" | grep -q working; }
 # shot NAME: a screenshot of a picture that rests
 shot()
 {
-    until_true 90 rests || fail "the picture \"$1\" did not come to rest"
+    rest_end=$(($(date +%s) + 90)) # a loop of its own: until_true calls this
+    until rests; do
+        kill -0 "$viewer" 2>/dev/null || fail "the viewer ended: $(cat viewer.log)"
+        [ "$(date +%s)" -lt "$rest_end" ] || fail "the picture \"$1\" did not come to rest"
+        sleep 0.1
+    done
     import -window "$window" "$1.png"
 }
 # distance PART A B: root mean square difference within a part of the window, of 1

@@ -174,6 +174,14 @@ void view_command_write(const view_state *state, const view_state *base, const v
     if (state->course.motion.drift[0] != 0 || state->course.motion.drift[1] != 0 ||
         state->course.motion.drift[2] != 0)
         add_vector(&end, "drift", state->course.motion.drift);
+    const shape_motion *motion = &state->course.motion;
+    if (motion->decay > 0)
+        add(&end, " --decay %.9g..%.9g", motion->decay_start, motion->decay_start + motion->decay);
+    if (command->morph) {
+        add(&end, " --morph");
+        add_path(&end, command->morph);
+        add(&end, " --morph-time %.9g", state->course.morph_seconds);
+    }
     if (command->seed != 1)
         add(&end, " --seed %llu", (unsigned long long)command->seed);
     if (command->alpha)

@@ -267,6 +267,7 @@ static void plan(view_job *job, const cli_common *common)
     job->samples = (int)samples;
     job->path = job->title = common->arguments[0];
     job->alpha = alpha;
+    job->morph_path = morph_path;
     job->time = moment_time;
     job->seed = common->seed;
     job->generator.seed = common->seed;
@@ -305,12 +306,12 @@ int main(int argc, char **argv)
         cli_check(shape_morph_create(job.set, other.set, &morph, &error), &error);
         job.morph = morph;
     }
-    if (headless || bench_given) {
+    if (frames_given) {
+        cli_check(view_frames_draw(&job, &frames, &error), &error);
+    } else if (headless || bench_given) {
         cli_check(view_job_place(&job, job.time, &error), &error);
         job.load_ms = now_ms() - started;
         draw_headless(&job, started, &common);
-    } else if (frames_given) {
-        cli_check(view_frames_draw(&job, &frames, &error), &error);
     } else {
         cli_check(view_window(&job, &error), &error);
     }

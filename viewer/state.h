@@ -100,7 +100,8 @@ void view_history_merge(view_history *history, const view_state *base, const vie
 /* --- command.c: the commands that make what is seen --- */
 
 typedef struct view_command {
-    const char *path; /* the opened file */
+    const char *path;  /* the opened file */
+    const char *morph; /* the one that it turns into, or NULL */
     bool grammar, alpha;
     int size[2];
     uint64_t seed; /* of the rays' starts */

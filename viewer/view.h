@@ -19,8 +19,8 @@ typedef struct view_job {
     view_course course;
     double time; /* of a picture without a window [s] */
     shape_gl_options options;
-    const char *path, *title;
-    view_generator generator; /* of a grammar */
+    const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
+    view_generator generator;              /* of a grammar */
     bool grammar, alpha;
     int samples; /* of a picture without a window, and of a window at rest */
     double load_ms;

@@ -273,8 +273,8 @@ static void hear_news(window_state *w)
 
 static void make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room)
 {
-    const view_command command = {
-        w->job->path, w->job->grammar, alpha, {size[0], size[1]}, w->job->options.seed};
+    const view_command command = {w->job->path, w->job->morph_path, w->job->grammar,
+                                  alpha,        {size[0], size[1]}, w->job->options.seed};
     view_command_write(&w->state, &w->base, &command, text, room);
 }
 
