@@ -67,7 +67,7 @@ grammar()
 axiom X
 iterations 6
 angle $1
-extinction 3
+extinction 12
 X -> X [ +($1) X ] [ -($1) X ]
 END
 }
@@ -179,9 +179,9 @@ exec 5>heap.lsys
 printf 'axiom X\niterations 0\n' >&5
 sleep 1.5
 like $cloud half mended
-printf 'angle 30\nextinction 3\n' >&5
+printf 'angle 30\nextinction 12\n' >&5
 exec 5>&-
-unlike $cloud written mended
+unlike $cloud written mended 0.015
 # An editor that writes beside the file and renames.
 cp good.lsys beside
 mv beside heap.lsys

@@ -239,6 +239,35 @@ static shape_status draw_engine(view_renderer *r, engine *e, int width, int heig
     return status;
 }
 
+static bool has_wish(view_renderer *r)
+{
+    pthread_mutex_lock(&r->mutex);
+    bool has = r->fresh || r->stop;
+    pthread_mutex_unlock(&r->mutex);
+    return has;
+}
+
+/* A sample of one side of the picture, from x0 to x1. The slow methods draw it band by band and give up for a new wish,
+ * which begins another picture. */
+static shape_status draw_side(view_renderer *r, engine *e, int x0, int x1, shape_error *error)
+{
+    enum { BANDS = 12 };
+    int height = r->now.height, width = r->now.width;
+    if (e->method == SHAPE_GL_DEFAULT)
+        return draw_engine(r, e, width, height, r->sample, error);
+    double start = now_ms();
+    shape_status status = SHAPE_OK;
+    glEnable(GL_SCISSOR_TEST);
+    for (int band = 0; band < BANDS && !status && !has_wish(r); band++) {
+        int low = height * band / BANDS, high = height * (band + 1) / BANDS;
+        glScissor(x0, low, x1 - x0, high - low);
+        status = draw_engine(r, e, width, height, r->sample, error);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    e->pixel_ms = (now_ms() - start) / fmax((double)(x1 - x0) * height, 1);
+    return status;
+}
+
 /* A picture for the moment. */
 static shape_status draw_moving(view_renderer *r, engine *e, shape_error *error)
 {
@@ -273,6 +302,7 @@ static shape_status draw_pending(view_renderer *r, shape_error *error)
     nanosleep(&pause, NULL);
     shape_status status = draw_engine(r, &r->full, r->now.width, r->now.height, -1, error);
     double ms = now_ms() - start - 20;
+    split = split && r->other.method == SHAPE_GL_DEFAULT; /* the slow ones wait for their turn */
     if (!status && split)
         status = draw_engine(r, &r->other, r->now.width, r->now.height, -1, error);
     if (!status)
@@ -286,10 +316,13 @@ static shape_status draw_sample(view_renderer *r, shape_error *error)
 {
     bool split = r->now.state.split;
     double start = now_ms();
-    shape_status status = draw_engine(r, &r->full, r->now.width, r->now.height, r->sample, error);
+    int width = r->now.width, line = split ? (int)((float)width * r->now.state.divider) : width;
+    shape_status status = draw_side(r, &r->full, 0, line, error);
     double ms = now_ms() - start;
     if (!status && split)
-        status = draw_engine(r, &r->other, r->now.width, r->now.height, r->sample, error);
+        status = draw_side(r, &r->other, line, width, error);
+    if (!status && has_wish(r))
+        return SHAPE_OK; /* perhaps not all of it has been drawn */
     r->sample++;
     r->drawn = true;
     if (shape_gl_refined(r->full.gl) || (split && shape_gl_refined(r->other.gl)))
@@ -325,22 +358,7 @@ static shape_status make_scene(view_renderer *r, shape_error *error)
 
 /* --- what a new wish changes --- */
 
-static bool same_clouds(const view_state *a, const view_state *b)
-{
-    return a->cloud_count == b->cloud_count && !memcmp(a->clouds, b->clouds, sizeof a->clouds) &&
-           !memcmp(&a->course.motion, &b->course.motion, sizeof a->course.motion) &&
-           a->course.morph_seconds == b->course.morph_seconds;
-}
-
-static bool same_light(const view_state *a, const view_state *b)
-{
-    shape_light x = view_state_light(a), y = view_state_light(b);
-    return x.sun.x == y.sun.x && x.sun.y == y.sun.y && x.sun.z == y.sun.z && x.sky == y.sky &&
-           !memcmp(x.sun_irradiance, y.sun_irradiance, sizeof x.sun_irradiance) &&
-           !memcmp(x.sky_radiance, y.sky_radiance, sizeof x.sky_radiance);
-}
-
-/* Whether what was drawn only has to be shown anew: by another exposure, as a map of heat, split elsewhere. */
+/* Whether what was drawn only has to be shown anew: by another exposure, as a map of heat. */
 static bool same_picture(const view_request *was, const view_request *is)
 {
     view_request other;
@@ -348,7 +366,6 @@ static bool same_picture(const view_request *was, const view_request *is)
     other.number = is->number;
     other.state.exposure = is->state.exposure;
     other.state.heat = is->state.heat;
-    other.state.divider = is->state.divider;
     other.state.boxes = is->state.boxes;
     other.state.outlines = is->state.outlines;
     other.state.samples = is->state.samples;
@@ -367,8 +384,8 @@ static bool adopt(view_renderer *r, const view_request *wish, view_shared *set)
     view_state *was = &r->now.state;
     const view_state *is = &wish->state;
     bool other_time = was->time != is->time && moves_in_time(r, is);
-    bool clouds = !r->scene || set != r->set || other_time || !same_clouds(was, is);
-    bool light = clouds || !same_light(was, is);
+    bool clouds = !r->scene || set != r->set || other_time || !view_state_same_clouds(was, is);
+    bool light = clouds || !view_state_same_light(was, is);
     bool grid = was->light_grid != is->light_grid || was->method != is->method ||
                 was->other_method != is->other_method || was->split != is->split;
     bool same =
@@ -456,7 +473,7 @@ static shape_status step(view_renderer *r, shape_error *error)
     if (!full) {
         say(r, "light");
         status = light_full(r, error);
-        return status ? status : draw_pending(r, error);
+        return status || r->full.method != SHAPE_GL_DEFAULT ? status : draw_pending(r, error);
     }
     if (is_pending(r))
         return draw_pending(r, error);

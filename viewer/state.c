@@ -149,6 +149,21 @@ shape_status view_state_set(const view_state *state, const shape_set *set, const
     return status;
 }
 
+bool view_state_same_clouds(const view_state *a, const view_state *b)
+{
+    return a->cloud_count == b->cloud_count && !memcmp(a->clouds, b->clouds, sizeof a->clouds) &&
+           !memcmp(&a->course.motion, &b->course.motion, sizeof a->course.motion) &&
+           a->course.morph_seconds == b->course.morph_seconds;
+}
+
+bool view_state_same_light(const view_state *a, const view_state *b)
+{
+    shape_light x = view_state_light(a), y = view_state_light(b);
+    return x.sun.x == y.sun.x && x.sun.y == y.sun.y && x.sun.z == y.sun.z && x.sky == y.sky &&
+           !memcmp(x.sun_irradiance, y.sun_irradiance, sizeof x.sun_irradiance) &&
+           !memcmp(x.sky_radiance, y.sky_radiance, sizeof x.sky_radiance);
+}
+
 /* --- undo --- */
 
 enum { KEPT = 64 };

@@ -60,6 +60,10 @@ shape_light view_state_light(const view_state *state);
 shape_status view_state_set(const view_state *state, const shape_set *set, const shape_morph *morph,
                             shape_set **made, shape_error *error);
 
+/* Whether two states show the same clouds (but for the time), and light them alike. */
+bool view_state_same_clouds(const view_state *a, const view_state *b);
+bool view_state_same_light(const view_state *a, const view_state *b);
+
 /* --- knobs: the numbers that the panel shows as sliders, and the options that stand for them --- */
 
 typedef enum view_knob_kind { VIEW_KNOB_FLOAT, VIEW_KNOB_DOUBLE, VIEW_KNOB_INT } view_knob_kind;
