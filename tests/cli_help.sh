@@ -18,7 +18,8 @@ fail()
 not_yet="neph-edit:simplify neph-edit:primitives \
 neph-render:density-gain"
 
-common="output seed quiet help version"
+save="save-scene"
+common="output seed quiet generate help version"
 medium="model extinction albedo phase g kappa octaves noise-scale edge at"
 picture="size eye target fov sun sun-irradiance sky exposure"
 
@@ -27,20 +28,20 @@ options_of()
 {
     case $1 in
     neph-gauss)
-        echo "$medium count mean sigma clamp clamp-mode radius-law max-radius no-hollow no-prune preset field area"
+        echo "$medium $save count mean sigma clamp clamp-mode radius-law max-radius no-hollow no-prune preset field area"
         ;;
-    neph-lsys) echo "$medium iterations angle radius length max-primitives print count" ;;
-    neph-meta) echo "$medium count sigma max-radius" ;;
-    neph-mesh) echo "$medium faces scale no-rotate fit fill up center size" ;;
-    neph-layer) echo "$medium bounds extent noise frequency coverage ramp preset" ;;
+    neph-lsys) echo "$medium $save iterations angle radius length max-primitives print count" ;;
+    neph-meta) echo "$medium $save count sigma max-radius" ;;
+    neph-mesh) echo "$medium $save faces scale no-rotate fit fill up center size" ;;
+    neph-layer) echo "$medium $save bounds extent noise frequency coverage ramp preset" ;;
     neph-edit)
-        echo "$medium translate rotate scale hollow prune thin grow clip simplify primitives cloud"
+        echo "$medium $save translate rotate scale hollow prune thin grow clip simplify primitives cloud"
         ;;
-    neph-info) echo "json csv" ;;
-    neph-render) echo "$picture method spp noise rule steps light stats compare tolerance density-gain" ;;
+    neph-info) echo "json csv allow-outside" ;;
+    neph-render) echo "$picture $save allow-outside method spp noise rule steps light stats compare tolerance density-gain" ;;
     neph-vdb) echo "resolution voxel-size half up ramp grid primitives error max-memory" ;;
     neph-chart) echo "quick" ;;
-    neph-view) echo "$picture headless method bench frames" ;;
+    neph-view) echo "$picture $save allow-outside headless method bench frames" ;;
     *) return 1 ;;
     esac
 }

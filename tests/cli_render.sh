@@ -73,14 +73,79 @@ for rule in riemann-left riemann-right trapezoid simpson simpson38; do
     "$bin/neph-render" --compare $rule.exr exponential.exr --tolerance 0.003 >/dev/null || fail "--rule $rule is far off"
     cmp -s $rule.exr exponential.exr && fail "--rule $rule makes the exponential rule's very picture"
 done
-for light in powder octaves grid; do
-    "$bin/neph-render" -q c.neph --size 32x18 --method march --light $light -o $light.exr || fail "--light $light failed"
-    OMP_NUM_THREADS=1 "$bin/neph-render" -q c.neph --size 32x18 --method march --light $light -o one.exr
-    cmp -s $light.exr one.exr || fail "--light $light: one thread makes another picture than many"
+march="--size 32x18 --method march"
+# differs NAME OPTION...: a picture of these options, another one than plain.exr; the same with one thread.
+differs() {
+    name=$1
+    shift
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q c.neph $march "$@" -o "$name.exr" || fail "$* failed"
+    # shellcheck disable=SC2086
+    OMP_NUM_THREADS=1 "$bin/neph-render" -q c.neph $march "$@" -o one.exr
+    cmp -s "$name.exr" one.exr || fail "$*: one thread makes another picture than many"
+    cmp -s "$name.exr" plain.exr && fail "$* changes nothing"
+    return 0
+}
+"$bin/neph-render" -q c.neph $march --light single -o plain.exr
+for light in powder powder-angle beer-max harris two-pass octaves grid; do
+    differs $light --light $light
 done
+for shadow in cone grid; do
+    differs shadow-$shadow --light single --shadow $shadow
+done
+for jitter in hash blue; do
+    differs jitter-$jitter --light single --jitter $jitter
+done
+differs geometric --light single --step geometric --growth 1.05
+differs exponential --light single --step exponential --step-pixels 2
+differs shade --light single --shade 0.5
+differs powder5 --light powder --powder 5
+cmp -s powder.exr powder5.exr && fail "--powder changes nothing"
+differs forward --light harris --forward 0.9
+cmp -s harris.exr forward.exr && fail "--forward changes nothing"
+differs emission --light single --emission 0.1,0,0
+differs silver --light single --silver
+differs lock --light single --lock 3
+differs power --light single --alpha-power 3
+differs peel --light single --alpha-peel 0.9
+
+# The methods of 2018.
+for method in paper paper-ndt; do
+    "$bin/neph-render" -q c.neph --size 32x18 --method $method -o $method.exr --stats >paper.json || fail "$method failed"
+    grep -q "\"method\": \"$method\"" paper.json || fail "--stats gives another method than $method"
+done
+cmp -s paper.exr paper-ndt.exr && fail "paper and paper-ndt are one picture"
+"$bin/neph-render" -q c.neph --size 32x18 --method paper --paper-lod --light-resolution 10 -o lod.exr
+cmp -s paper.exr lod.exr && fail "--paper-lod changes nothing"
+
+# Opaque things: in front of the cloud they hide it, behind it they change nothing but what shines through.
+printf 'v -99 -99 %s\nv 99 -99 %s\nv 99 99 %s\nv -99 99 %s\nf 1 2 3 4\n' 11 11 11 11 >wall.obj
+printf 'OFF\n3 1 0\n-1 -1 -2\n1 -1 -2\n0 1 -2\n3 0 1 2\n' >floor.off
+look="--size 32x18 --eye 0,1,12 --target 0,1,0 --sun 0,45 --sky none"
+for method in "march --light single" "reference --spp 4"; do
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q c.neph $look --method $method --mesh wall.obj --mesh-colour 0.5,0.25,0 -o wall.exr --stats \
+        >wall.json || fail "--mesh failed"
+    # A matt wall in the sun at 45 degrees: 0.5 / pi * pi * cos 45.
+    sed -n '/"mean"/,/]/p' wall.json | tr -d '\n ' | grep -q '\[0.3535[0-9]*,0.1767[0-9]*,0.0\]' ||
+        fail "$method: a wall in the sun has another radiance: $(cat wall.json)"
+done
+"$bin/neph-render" -q c.neph $look --method march --mesh floor.off -o floor.exr || fail "an OFF mesh failed"
+wrong "more colours than meshes" "$bin/neph-render" c.neph -o a.png --mesh-colour 1,1,1
+wrong "from 0 to 1" "$bin/neph-render" c.neph -o a.png --mesh wall.obj --mesh-colour 2,1,1
+wrong "no opaque things" "$bin/neph-render" c.neph -o a.png --method paper --mesh wall.obj
+wrong "without --mesh" "$bin/neph-render" c.neph -o a.png --method march --step-end adapt
+code=0
+"$bin/neph-render" c.neph -o a.png --mesh c.pfm 2>err || code=$?
+[ "$code" -eq 1 ] || fail "a picture as a mesh ended with $code, not 1"
+grep -q "c.pfm: not a mesh" err || fail "a picture as a mesh: $(cat err)"
+
 # The light grid has all scatterings; the reference's mean, at 64 paths a pixel, is within a tenth.
 "$bin/neph-render" -q c.neph --size 32x18 --spp 64 -o truth.exr
 "$bin/neph-render" --compare grid.exr truth.exr --tolerance 0.1 >/dev/null || fail "--light grid is far from the reference"
 wrong "belong to --method march" "$bin/neph-render" c.neph -o a.png --steps 10
 wrong "belong to --method reference" "$bin/neph-render" c.neph -o a.png --method march --noise 0.1
-wrong "goes with --rule exponential" "$bin/neph-render" c.neph -o a.png --method march --rule simpson --jitter
+wrong "goes with --step geometric" "$bin/neph-render" c.neph -o a.png --method march --growth 1.1
+wrong "goes with --light harris" "$bin/neph-render" c.neph -o a.png --method march --forward 0.1
+wrong "phase function of their own" "$bin/neph-render" c.neph -o a.png --method march --silver
+wrong "belongs to --method paper" "$bin/neph-render" c.neph -o a.png --paper-lod

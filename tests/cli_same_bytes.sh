@@ -40,13 +40,14 @@ build() {
     for room in base primitive generate field file tools; do
         mkdir -p "$1/$room"
         case $room in
-        file) files="neph_*.c atomic.c" ;;
+        file) files="neph_*.c scene*.c atomic.c" ;;
         tools) files="cli*.c" ;;
         *) files="*.c" ;;
         esac
-        # Meshes are equal on one platform only, so nobody promises anything about them here.
+        # Meshes are equal on one platform only, so nobody promises anything about them here; but every program has
+        # the options of neph-mesh.
         # shellcheck disable=SC2086
-        (cd "$(folder_of $room)" && ls $files | grep -v mesh) > "$1/$room/list"
+        (cd "$(folder_of $room)" && ls $files | grep -v -e '^mesh' -e '^cli_mesh.c$') > "$1/$room/list"
         # shellcheck disable=SC2046,SC2086
         (cd "$1/$room" && $2 $flags -c $(sed "s|^|$(folder_of $room)/|" list)) || return 1
     done

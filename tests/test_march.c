@@ -29,7 +29,7 @@ static double look(const sample_scene *scene, const shape_light *light, const sh
     memset(&scratch, 0, sizeof scratch);
     if (shape_marcher_create(scene->volume, light, eye, options, &marcher, &error))
         fail_msg("%s", error.text);
-    assert_int_equal(shape_march_radiance(marcher, eye, direction, NULL, &scratch, rgb, &error), SHAPE_OK);
+    assert_int_equal(shape_march_radiance(marcher, eye, direction, 0, &scratch, rgb, &error), SHAPE_OK);
     shape_march_scratch_free(&scratch);
     shape_marcher_destroy(marcher);
     return rgb[0];
@@ -68,9 +68,9 @@ static void rules_converge_at_their_order(void **state)
             double coarse = look(&scene, &light, &options, eye, direction) - truth;
             options.step /= 2;
             /* Steps that grow by q must become growing by sqrt(q) as they are halved. */
-            options.growth = growing ? 1.02 : 1;
+            options.stepping = growing ? SHAPE_STEP_GEOMETRIC : SHAPE_STEP_FIXED;
             double fine = look(&scene, &light, &options, eye, direction) - truth;
-            options.growth = 1;
+            options.stepping = SHAPE_STEP_FIXED;
             if (growing) { /* the sum is still that of a fine rule */
                 assert_true(fabs(fine) < fabs(coarse));
                 continue;
@@ -202,7 +202,7 @@ static void stays_in_bounds(void **state)
             options.rule = (shape_rule)rule;
             options.light = (shape_march_light)kind;
             options.resolution = 12;
-            options.jitter = true;
+            options.jitter = SHAPE_JITTER_HASH;
             assert_int_equal(shape_marcher_create(scene.volume, &light, view.eye, &options, &marcher, NULL),
                              SHAPE_OK);
             assert_int_equal(shape_march_render(marcher, &view, radiance, NULL, NULL), SHAPE_OK);

@@ -158,9 +158,48 @@ static estimate slab_radiance(double tau, double g, double sun, double view, int
 static void camera_sees_the_slabs_radiance(void **state)
 {
     (void)state;
+    estimate grazing = slab_radiance(1, 0.75, 1, 0.1, 60000);
     estimate oblique = slab_radiance(1, 0.75, 1, 0.5, 60000), nadir = slab_radiance(1, 0.75, 1, 1, 60000);
+    estimate thick = slab_radiance(8, 0.75, 1, 1, 12000);
+    assert_estimate(&grazing, 0.15139, 5e-5);
     assert_estimate(&oblique, 0.10125, 5e-5);
     assert_estimate(&nadir, 0.03908, 5e-5);
+    assert_estimate(&thick, 0.4925, 4e-4);
+}
+
+/* The same light from the other end: of photons that fall straight down, a share leaves upwards between two cosines, and
+ * radiance is that share times E over pi (b^2 - a^2). The camera's mean over the same range, drawn by the cosine, agrees. */
+static void traced_from_the_sun_as_from_the_camera(void **state)
+{
+    (void)state;
+    static const double range[3][2] = {{0.05, 0.3}, {0.4, 0.6}, {0.8, 1}};
+    const int walks = 150000, looks = 20000;
+    sample_scene scene = slab(1, 0.75, 1);
+    shape_tracer *tracer = trace(&scene);
+    shape_light light = sun_only(1);
+    shape_pathtrace_options options = shape_pathtrace_defaults();
+    shape_random random = shape_random_seed(9, 1);
+    shape_dvec3 down = {0, -1, 0}, above = {0, 2, 0};
+    estimate from_sun[3] = {{0, 0, 0}}, from_camera[3] = {{0, 0, 0}};
+    options.sun_angle = 0;
+    for (int i = 0; i < walks; i++) {
+        double cosine = shape_tracer_walk(tracer, above, down, 4096, &random).direction.y;
+        for (int k = 0; k < 3; k++) {
+            double a = range[k][0], b = range[k][1];
+            add(&from_sun[k], cosine > a && cosine <= b ? pi / (pi * (b * b - a * a)) : 0);
+        }
+    }
+    for (int i = 0; i < 3 * looks; i++) {
+        double a = range[i % 3][0], b = range[i % 3][1], rgb[3];
+        double view = sqrt(a * a + (b * b - a * a) * shape_random_unit(&random));
+        shape_dvec3 d = {0, -view, sqrt(1 - view * view)};
+        shape_pathtrace_radiance(tracer, &light, &options, shape_dvec3_scale(d, -2 / view), d, &random, rgb);
+        add(&from_camera[i % 3], rgb[0]);
+    }
+    for (int k = 0; k < 3; k++)
+        assert_estimate(&from_sun[k], mean(&from_camera[k]), 4 * standard_error(&from_camera[k]));
+    shape_tracer_destroy(tracer);
+    sample_end(&scene);
 }
 
 /* Helmholtz: radiance over the sun's cosine stays the same when sun and camera change places. */
@@ -373,6 +412,7 @@ int main(void)
         cmocka_unit_test(absorbing_slab_as_the_tables_say),
         cmocka_unit_test(single_scattering_of_an_isotropic_slab),
         cmocka_unit_test(camera_sees_the_slabs_radiance),
+        cmocka_unit_test(traced_from_the_sun_as_from_the_camera),
         cmocka_unit_test(slab_is_reciprocal),
         cmocka_unit_test(ball_transmits_as_its_closed_form),
         cmocka_unit_test(white_furnace_is_white),

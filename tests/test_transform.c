@@ -200,6 +200,25 @@ static void equal_scaling_leaves_the_primitives_and_the_noise(void **state)
     shape_set_destroy(after);
 }
 
+/* One cloud at a time comes out as all of them at once. */
+static void one_cloud_moves_as_a_set_does(void **state)
+{
+    (void)state;
+    shape_set *one = sample_set(), *all = sample_set();
+    shape_transform t = {.scale = {3, 3, 3}, .rotate = {1, 2, 3}, .translate = {4, 5, 6}, .keep_depth = true};
+    shape_error error;
+    assert_int_equal(shape_set_transform(all, NULL, &t, &error), SHAPE_OK);
+    for (size_t i = 0; i < one->cloud_count; i++) {
+        assert_int_equal(shape_cloud_transform(&one->clouds[i], &t, &error), SHAPE_OK);
+        assert_memory_equal(&one->clouds[i].frame, &all->clouds[i].frame, sizeof(shape_frame));
+        assert_true(one->clouds[i].medium.extinction == all->clouds[i].medium.extinction);
+    }
+    t.scale[1] = 2;
+    assert_int_equal(shape_cloud_transform(&one->clouds[0], &t, &error), SHAPE_ERROR_ARGUMENT);
+    shape_set_destroy(one);
+    shape_set_destroy(all);
+}
+
 static void unequal_scaling_makes_ellipsoids(void **state)
 {
     (void)state;
@@ -271,6 +290,7 @@ int main(void)
         cmocka_unit_test(clouds_move_as_the_world_does),
         cmocka_unit_test(the_order_is_scale_rotate_translate),
         cmocka_unit_test(equal_scaling_leaves_the_primitives_and_the_noise),
+        cmocka_unit_test(one_cloud_moves_as_a_set_does),
         cmocka_unit_test(unequal_scaling_makes_ellipsoids),
         cmocka_unit_test(similar_maps_keep_spheres),
         cmocka_unit_test(wrong_options_are_refused),

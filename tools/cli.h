@@ -23,8 +23,16 @@ typedef enum cli_kind {
     CLI_RANGE,   /* double[2]: A or A..B, in [min, max], A <= B */
     CLI_SIZE,    /* int64_t[2]: WxH, each in [min, max] */
     CLI_CHOICE,  /* int: the place of the word in `choices`, "a|b|c" */
-    CLI_TEXT     /* const char *, as given */
+    CLI_TEXT,    /* const char *, as given */
+    CLI_TEXTS    /* cli_texts: an option that may be given several times, in this order */
 } cli_kind;
+
+enum { CLI_SCENE_ONLY = 2 };
+enum { CLI_TEXTS_MAX = 64 };
+typedef struct cli_texts {
+    const char *text[CLI_TEXTS_MAX]; /* for the program's life */
+    int count;
+} cli_texts;
 
 typedef struct cli_option {
     const char *name; /* long name, without the dashes; NULL ends a table */
@@ -36,7 +44,8 @@ typedef struct cli_option {
         *choices;     /* CLI_CHOICE: the words; else the argument's name in --help (N, L, X,Y,Z), or NULL */
     const char *help; /* one line, with the unit; the default is shown in square brackets at its end */
     bool *given;      /* set where the option is given; may be NULL */
-    bool unrecorded;  /* leave it out of `made_by`: it changes nothing in the file (-o, -q, --print) */
+    int unrecorded; /* true: it is left out of `made_by`, since it changes nothing in the file (-o, -q, --print);
+                         CLI_SCENE_ONLY: likewise, but a scene keeps it (a limit) */
 } cli_option;
 
 /* A named group of options, shown together in --help. */
@@ -45,6 +54,11 @@ typedef struct cli_group {
     const cli_option *options;
 } cli_group;
 
+/* Another help text for an option of a shared table, whose default is another one here. */
+typedef struct cli_help {
+    const char *name, *help; /* NULL ends the list */
+} cli_help;
+
 typedef struct cli_program {
     const char *name;      /* "neph-lsys" */
     const char *arguments; /* "GRAMMAR" or "" */
@@ -52,6 +66,7 @@ typedef struct cli_program {
     const char *examples;  /* lines for --help and the manual, each ending in \n; may be NULL */
     int min_arguments, max_arguments;
     const cli_group *groups; /* ended by a group with title NULL */
+    const cli_help *help;    /* may be NULL */
 } cli_program;
 
 /* What every program has. */
@@ -121,6 +136,7 @@ typedef struct cli_medium {
 } cli_medium;
 
 extern cli_medium cli_medium_values;
+extern const cli_medium cli_medium_defaults;
 /* The rows that fill cli_medium_values; put them into a group titled "Medium and frame". */
 extern const cli_option cli_medium_options[];
 /* Overrides in *cloud what was given on the command line, and places it by --at (added to the frame's translation). */

@@ -1,16 +1,14 @@
 /* The medium and frame options that every program which makes or changes a cloud has. */
 #include "cli.h"
 
-cli_medium cli_medium_values = {.model = SHAPE_MODEL_SPHEROID,
-                                .extinction = 2,
-                                .albedo = 1,
-                                .g = 0.85,
-                                .g2 = -0.3,
-                                .lobe_mix = 0.3,
-                                .droplet = 10,
-                                .kappa = 0.5,
-                                .octaves = 5,
-                                .edge = 4.2};
+#define DEFAULTS                                                                                             \
+    {                                                                                                        \
+        .model = SHAPE_MODEL_SPHEROID, .extinction = 2, .albedo = 1, .g = 0.85, .g2 = -0.3, .lobe_mix = 0.3, \
+        .droplet = 10, .kappa = 0.5, .octaves = 5, .edge = 4.2                                               \
+    }
+
+const cli_medium cli_medium_defaults = DEFAULTS;
+cli_medium cli_medium_values = DEFAULTS;
 
 #define GIVEN(name) &cli_medium_values.name##_given, false
 #define VALUE(name) &cli_medium_values.name

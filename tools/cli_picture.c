@@ -10,7 +10,9 @@ cli_picture cli_picture_values = {.size = {640, 360},
                                   .sun = {60, 40},
                                   .sun_irradiance = {PI, PI, PI},
                                   .sky = "clear",
-                                  .exposure = 0.5};
+                                  .exposure = 0.5,
+                                  .sun_angle = 0.53,
+                                  .lamp_intensity = {10, 10, 10}};
 
 #define GIVEN(name) &cli_picture_values.name##_given, false
 #define VALUE(name) &cli_picture_values.name

@@ -2,13 +2,15 @@
 #ifndef NEPHELE_CLI_PICTURE_H
 #define NEPHELE_CLI_PICTURE_H
 
-#include "cli.h"
+#include "cli_scene.h"
 #include "shape/view.h"
 
 typedef struct cli_picture {
     int64_t size[2];
     double eye[3], target[3], fov, sun[2], sun_irradiance[3], exposure;
     const char *sky;
+    double sun_angle, lamp[3], lamp_intensity[3]; /* options of neph-render alone, and of scenes */
+    bool sun_angle_given, lamp_given, lamp_intensity_given;
     bool size_given, eye_given, target_given, fov_given, sun_given, sun_irradiance_given, sky_given,
         exposure_given;
 } cli_picture;
@@ -21,5 +23,10 @@ extern const cli_option cli_picture_options[];
  * turns the framed view there); with --eye and without --target it looks at the set's middle. A sky
  * that is no sky, or an eye on its target, ends the program with exit 2. */
 void cli_picture_apply(const shape_set *set, shape_view *view, shape_light *light);
+
+/* Takes from a scene what the command line has not given; before cli_picture_apply. */
+void cli_picture_use_scene(const shape_scene *scene);
+/* Does --save-scene: the clouds as they came in, seen and lit as they were shown. */
+void cli_picture_save_scene(const cli_input *input, const shape_view *view, const shape_light *light);
 
 #endif

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli_scene.h"
 #include "shape/combine.h"
 #include "shape/gaussian.h"
 #include "shape/prune.h"
@@ -77,12 +77,14 @@ static char medium_help[64][160];
 static const cli_group groups[] = {{"Which, and where to", place_options},
                                    {"Rework", rework_options},
                                    {"Medium and frame, where given", medium_options},
+                                   {"Scene", cli_scene_options},
                                    {0}};
 
 static const cli_program program = {
     .name = "neph-edit",
     .arguments = "FILE...",
-    .about = "Combines the clouds of several files into one, and changes all of them or one. Whatever the "
+    .about = "Combines the clouds of several .neph files or scenes into one, and changes all of them or one. "
+             "Whatever the "
              "order of the\n"
              "options, the order of work is: scale, mirror, rotate, translate; grow; clip; hollow; thin; "
              "prune; medium.\n"
@@ -144,6 +146,22 @@ static shape_grow grow_in_force(void)
     return options;
 }
 
+/* A scene of one file, the one that was written. */
+static void save_scene(const cli_common *common)
+{
+    shape_error error;
+    shape_scene_cloud *cloud;
+    if (!cli_save_wanted())
+        return;
+    shape_scene *scene = shape_scene_create(&error);
+    if (!scene)
+        cli_fail("%s", error.text);
+    cli_check(shape_scene_add_cloud(scene, &cloud, &error), &error);
+    cloud->file = cli_save_name(common->output);
+    cli_save_scene(scene);
+    shape_scene_destroy(scene);
+}
+
 /* Finds a wrong command before anything is read. Options that do nothing without another one are mistakes too. */
 static void check_command(void)
 {
@@ -175,13 +193,14 @@ static shape_set *read_all(const cli_common *common)
     if (from_stdin > 1)
         cli_wrong("standard input can be read once only (name the other inputs)");
     shape_error error;
-    shape_set *set = cli_read_set(common->arguments[0]);
+    cli_input all = cli_input_read(common->arguments[0]);
     for (int i = 1; i < common->argument_count; i++) {
-        shape_set *next = cli_read_set(common->arguments[i]);
-        cli_check(shape_set_append(set, next, &error), &error);
-        shape_set_destroy(next);
+        cli_input next = cli_input_read(common->arguments[i]);
+        cli_check(shape_set_append(all.set, next.set, &error), &error);
+        cli_input_free(&next);
     }
-    return set;
+    shape_scene_destroy(all.scene);
+    return all.set;
 }
 
 /* Which clouds --cloud means; the caller frees the array. */
@@ -307,6 +326,9 @@ int main(int argc, char **argv)
     prepare_medium_options();
     cli_parse(&program, argc, argv, &common);
     check_command();
+    cli_save_check(&common);
+    if (cli_save_wanted() && !strcmp(common.output, "-"))
+        cli_wrong("--save-scene names the file that is written (give -o FILE)");
     shape_set *set = read_all(&common);
     bool *selected = select_clouds(set);
     place(set, selected);
@@ -326,6 +348,7 @@ int main(int argc, char **argv)
     }
     cli_say("%zu cloud%s, %zu primitives", set->cloud_count, set->cloud_count == 1 ? "" : "s", primitives);
     cli_write_set(&common, set);
+    save_scene(&common);
     free(selected);
     shape_set_destroy(set);
     return cli_finish(&common);

@@ -6,18 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli_scene.h"
 #include "shape/file.h"
 #include "shape/neph.h"
 
-enum { MAX_FILE = 0x40000000, MAX_ROWS = 10000000 };
+enum { MAX_ROWS = 10000000 };
 
 /* A file that has been read, and where its clouds lie in the world. */
 typedef struct report {
     const char *path;
+    cli_input input;
+    char format[32]; /* "neph 1.0" */
     size_t size;
-    unsigned major, minor;
-    shape_set *set;
+    const shape_set *set;
     shape_box *boxes; /* a cloud's, in its own frame */
 } report;
 
@@ -73,14 +74,13 @@ static shape_box *find_boxes(const shape_set *set)
 
 static report read_report(const char *path)
 {
-    report r = {.path = strcmp(path, "-") ? path : "standard input"};
-    shape_error error;
-    unsigned char *bytes;
-    cli_check(shape_file_read(path, MAX_FILE, &bytes, &r.size, &error), &error);
-    if (shape_neph_decode(bytes, r.size, &r.set, &error))
-        cli_fail("%s: %s", r.path, error.text);
-    shape_neph_version(bytes, &r.major, &r.minor);
-    free(bytes);
+    report r = {.path = strcmp(path, "-") ? path : "standard input", .input = cli_input_read(path)};
+    r.size = r.input.size;
+    r.set = r.input.set;
+    if (r.input.scene)
+        snprintf(r.format, sizeof r.format, "scene %d", SHAPE_SCENE_VERSION);
+    else
+        snprintf(r.format, sizeof r.format, "neph %u.%u", r.input.major, r.input.minor);
     r.boxes = find_boxes(r.set);
     return r;
 }
@@ -288,8 +288,8 @@ static void print_table(FILE *out, const report *r)
 {
     const shape_set *set = r->set;
     size_t primitives = count_primitives(set);
-    fprintf(out, "%s: neph %u.%u, %zu bytes, %zu cloud%s, %zu primitive%s\n", r->path, r->major, r->minor,
-            r->size, set->cloud_count, plural(set->cloud_count), primitives, plural(primitives));
+    fprintf(out, "%s: %s, %zu bytes, %zu cloud%s, %zu primitive%s\n", r->path, r->format, r->size,
+            set->cloud_count, plural(set->cloud_count), primitives, plural(primitives));
     double corners[6];
     bool any = all_bounds(r, corners);
     print_bounds(out, "bounds ", any, corners);
@@ -438,7 +438,7 @@ static void print_json_cloud(FILE *out, const report *r, size_t index)
 
 static void print_json(FILE *out, const report *r)
 {
-    fprintf(out, "{\"format\": \"neph %u.%u\", \"bytes\": %zu, \"clouds\": [", r->major, r->minor, r->size);
+    fprintf(out, "{\"format\": \"%s\", \"bytes\": %zu, \"clouds\": [", r->format, r->size);
     for (size_t i = 0; i < r->set->cloud_count; i++) {
         if (i)
             fputc(',', out);
@@ -504,12 +504,14 @@ static const cli_option form_options[] = {
     {"csv", 0, CLI_FLAG, &as_csv, 0, 0, NULL, "a row a primitive, in the cloud's frame [off]", NULL, true},
     {0}};
 
-static const cli_group groups[] = {{"Form", form_options}, {0}};
+static const cli_group groups[] = {{"Form", form_options}, {"Scene", cli_outside_options}, {0}};
 
 static const cli_program program = {.name = "neph-info",
                                     .arguments = "FILE",
-                                    .about = "Shows what is in a .neph file: clouds, primitives, bounds, "
-                                             "frames, media, provenance. FILE may be -.",
+                                    .about =
+                                        "Shows what is in a .neph, or what a scene (docs/scene.md) makes: "
+                                        "clouds, primitives, bounds,\n"
+                                        "frames, media, provenance. FILE may be -.",
                                     .examples = "  neph-info castellanus.neph\n"
                                                 "  neph-gauss | neph-info --json -\n"
                                                 "  neph-info --csv castellanus.neph -o spheres.csv\n",
@@ -560,6 +562,6 @@ int main(int argc, char **argv)
     else
         write_report(&common, &r);
     free(r.boxes);
-    shape_set_destroy(r.set);
+    cli_input_free(&r.input);
     return cli_finish(&common);
 }

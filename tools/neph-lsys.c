@@ -1,37 +1,17 @@
 /* neph-lsys: a grammar file to a cloud of spheres and ellipsoids (Jiménez 2018, section 3.6.2). */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
-#include "shape/file.h"
-#include "shape/turtle.h"
+#include "cli_lsys.h"
 
-static int64_t iterations, max_primitives = 1000000;
-static double angle[2], radius[2], length[2], shrink[2];
-static bool iterations_given, angle_given, radius_given, length_given, shrink_given, print, count;
+static bool print, count;
 
-static const cli_option derivation_options[] = {
-    {"iterations", 0, CLI_INTEGER, &iterations, 0, SHAPE_GRAMMAR_ITERATIONS_MAX, "N",
-     "derivation levels [the file's, 5]", &iterations_given, false},
-    {"angle", 0, CLI_RANGE, angle, -1e6, 1e6, "A|A..B",
-     "turn of + - & ^ \\ / without argument, degrees [the file's, 25]", &angle_given, false},
-    {"radius", 0, CLI_RANGE, radius, 1e-9, 1e9, "R|R..S",
-     "radius of a puff without argument, metres [the file's, 1]", &radius_given, false},
-    {"length", 0, CLI_RANGE, length, 0, 1e9, "L|L..M",
-     "step of a puff without argument, metres [the file's, 1]", &length_given, false},
-    {"shrink", 0, CLI_RANGE, shrink, 1e-9, 1000, "F|F..E",
-     "factor on radius and length a derivation level [the file's, 1]", &shrink_given, false},
-    {"max-primitives", 0, CLI_INTEGER, &max_primitives, 1, 1e12, "N",
-     "more end the work with an error [1000000]", NULL, true},
+static const cli_option show_options[] = {
     {"print", 0, CLI_FLAG, &print, 0, 0, NULL,
      "the derived string on standard output; the cloud only by -o FILE", NULL, true},
     {"count", 0, CLI_FLAG, &count, 0, 0, NULL,
      "JSON {\"symbols\", \"primitives\"} on standard output, likewise", NULL, true},
     {0}};
-
-static const cli_group groups[] = {
-    {"Derivation", derivation_options}, {"Medium and frame", cli_medium_options}, {0}};
 
 static const cli_program program = {
     .name = "neph-lsys",
@@ -43,53 +23,7 @@ static const cli_program program = {
                 "  neph-lsys spiral.lsys --angle 50..100 --seed 7 | neph-view -\n"
                 "  neph-lsys spiral.lsys --iterations 3 --print\n",
     .min_arguments = 1,
-    .max_arguments = 1,
-    .groups = groups};
-
-static shape_grammar *read_grammar(const char *path, const char *shown)
-{
-    shape_error error;
-    unsigned char *bytes;
-    size_t size;
-    cli_check(shape_file_read(path, SHAPE_GRAMMAR_TEXT_MAX, &bytes, &size, &error), &error);
-    cli_note_input(path, bytes, size);
-    static shape_mistakes mistakes;
-    shape_grammar *grammar;
-    shape_status status = shape_grammar_parse(bytes, size, shown, &grammar, &mistakes, &error);
-    free(bytes);
-    if (status != SHAPE_ERROR_FORMAT) {
-        cli_check(status, &error);
-        return grammar;
-    }
-    for (int i = 0; i < mistakes.count; i++)
-        cli_error("%s:%d:%d: %s", shown, mistakes.items[i].line, mistakes.items[i].column,
-                  mistakes.items[i].text);
-    if (mistakes.more)
-        cli_error("%s: there are more mistakes (mend these first)", shown);
-    exit(CLI_FAILED);
-}
-
-static void override(bool given, const double values[2], shape_grammar_range *range)
-{
-    if (given) {
-        range->low = values[0];
-        range->high = values[1];
-    }
-}
-
-static shape_derive_options choose_options(const shape_grammar *grammar, uint64_t seed)
-{
-    shape_derive_options options = shape_derive_defaults(grammar);
-    options.seed = seed;
-    options.max_primitives = (uint64_t)max_primitives;
-    if (iterations_given)
-        options.iterations = (int)iterations;
-    override(angle_given, angle, &options.angle);
-    override(radius_given, radius, &options.radius);
-    override(length_given, length, &options.length);
-    override(shrink_given, shrink, &options.shrink);
-    return options;
-}
+    .max_arguments = 1};
 
 static shape_status print_symbol(void *user, const shape_symbol *symbol, shape_error *error)
 {
@@ -118,63 +52,24 @@ static void show(const shape_grammar *grammar, const shape_derive_options *optio
                (unsigned long long)counts.primitives);
 }
 
-static void summarize(const shape_set *set, const shape_derive_options *options,
-                      const shape_derive_counts *counts)
-{
-    const shape_primitives *list = shape_set_list_const(set, 0);
-    shape_dvec3 min = {0, 0, 0}, max = {0, 0, 0};
-    shape_set_bounds(set, &min, &max);
-    cli_say("%s: %zu spheres, %zu ellipsoids; %.3g x %.3g x %.3g m; %llu symbols by %d iterations",
-            set->clouds[0].name, list->sphere_count, list->ellipsoid_count, max.x - min.x, max.y - min.y,
-            max.z - min.z, (unsigned long long)counts->symbols, options->iterations);
-}
-
-static shape_set *make_cloud(const shape_grammar *grammar, const shape_derive_options *options,
-                             const char *path, const char *shown)
-{
-    shape_error error;
-    shape_derive_counts counts;
-    char name[SHAPE_NAME_MAX + 1];
-    shape_set *set = shape_set_create(&error);
-    if (!set)
-        cli_fail("%s", error.text);
-    cli_bare_name(path, "grammar", name);
-    cli_check(shape_set_add_cloud(set, name, NULL, &error), &error);
-    cli_check(shape_grammar_grow(grammar, options, shape_set_list(set, 0), &counts, &error), &error);
-    if (!counts.primitives)
-        cli_fail("%s: the derived string sets no puff (write an upper-case letter other than G into it, or "
-                 "name its "
-                 "letters by \"puffs\")",
-                 shown);
-    shape_cloud *cloud = &set->clouds[0];
-    cloud->field = shape_grammar_get_settings(grammar)->field;
-    cloud->medium = shape_grammar_get_settings(grammar)->medium;
-    cloud->seed = cloud->field.seed = options->seed;
-    cli_made_by(cloud->made_by);
-    cli_medium_apply(cloud);
-    cli_check(shape_cloud_choose_noise_scale(cloud, shape_set_list(set, 0), &error), &error);
-    summarize(set, options, &counts);
-    return set;
-}
-
 int main(int argc, char **argv)
 {
     cli_common common;
-    cli_parse(&program, argc, argv, &common);
+    cli_generator_parse(&program, &cli_lsys, show_options, argc, argv, &common);
     bool shows = print || count, to_file = strcmp(common.output, "-") != 0;
     if (print && count)
         cli_wrong("--print and --count both write to standard output (give one of them)");
     const char *path = common.arguments[0];
-    const char *shown = strcmp(path, "-") ? path : "standard input";
-    shape_grammar *grammar = read_grammar(path, shown);
-    shape_derive_options options = choose_options(grammar, common.seed);
+    shape_grammar *grammar = cli_lsys_read(path);
+    shape_derive_options options = cli_lsys_options(grammar, common.seed);
     if (shows)
         show(grammar, &options);
     if (!shows || to_file) {
-        shape_set *set = make_cloud(grammar, &options, path, shown);
+        shape_set *set = cli_lsys_make(grammar, &options, path);
         cli_write_set(&common, set);
         shape_set_destroy(set);
     }
     shape_grammar_destroy(grammar);
+    cli_generator_save(&cli_lsys, &common);
     return cli_finish(&common);
 }

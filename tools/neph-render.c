@@ -8,57 +8,52 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "cli_scene.h"
+#include "render_march.h"
+#include "render_opaque.h"
 #include "shape/file.h"
 #include "shape/image.h"
 #include "shape/imageerror.h"
 #include "shape/march.h"
+#include "shape/paper.h"
 #include "shape/pathtrace.h"
 
 enum { MAX_IMAGE_FILE = 0x7fffffff };
 
-static int method, rule = SHAPE_RULE_EXPONENTIAL, lighting = SHAPE_MARCH_GRID;
-static int64_t samples = 64, max_bounces = 4096, steps = 100, light_steps = 50, light_resolution = 48;
-static double growth = 1, noise, sun_angle = 0.53, lamp[3], lamp_intensity[3] = {10, 10, 10}, tolerance;
-static bool jitter, stats, compare, samples_given, noise_given, lamp_given, tolerance_given, march_given,
-    bounces_given, angle_given;
+enum { REFERENCE, MARCH, PAPER, PAPER_NDT };
+static const char *const method_names[] = {"reference", "march", "paper", "paper-ndt"};
+
+static int method;
+static int64_t samples = 64, max_bounces = 4096;
+static double noise, tolerance;
+static bool stats, compare, samples_given, noise_given, tolerance_given, bounces_given, paper_lod;
 
 static const cli_option render_options[] = {
-    {"method", 0, CLI_CHOICE, &method, 0, 0, "reference|march",
-     "reference: path tracing; march: sums along each ray [reference]", NULL, false},
+    {"method", 0, CLI_CHOICE, &method, 0, 0, "reference|march|paper|paper-ndt",
+     "path tracing; sums along each ray; Jiménez 2018 Algorithm 1, 2 [reference]", NULL, false},
     {"spp", 0, CLI_INTEGER, &samples, 1, 1 << 20, "N",
-     "paths a pixel; with --noise or --error the most; rays a pixel of march [64; march 1]", &samples_given,
+     "paths a pixel; with --noise or --error the most; rays of other methods [64; others 1]", &samples_given,
      false},
     {"error", 0, CLI_NUMBER, &noise, 1e-6, 10, "E", "the same as --noise", &noise_given, false},
     {"noise", 0, CLI_NUMBER, &noise, 1e-6, 10, "T", "stop at this relative error of the picture [off]",
      &noise_given, false},
     {"max-bounces", 0, CLI_INTEGER, &max_bounces, 0, 1 << 20, "N", "collisions that a path may have [4096]",
-     NULL, false},
-    {"sun-angle", 0, CLI_NUMBER, &sun_angle, 0, 90, "DEGREES", "the sun's diameter; 0: a direction [0.53]",
-     NULL, false},
-    {"lamp", 0, CLI_VECTOR, lamp, -1e12, 1e12, "X,Y,Z", "a lamp stands there, metres [none]", &lamp_given,
+     &bounces_given, false},
+    {"sun-angle", 0, CLI_NUMBER, &cli_picture_values.sun_angle, 0, 90, "DEGREES",
+     "the sun's diameter; 0: a direction [0.53]", &cli_picture_values.sun_angle_given, false},
+    {"lamp", 0, CLI_VECTOR, cli_picture_values.lamp, -1e12, 1e12, "X,Y,Z",
+     "a lamp stands there, metres [none]", &cli_picture_values.lamp_given, false},
+    {"lamp-intensity", 0, CLI_VECTOR, cli_picture_values.lamp_intensity, 0, 1e18, "R,G,B",
+     "of the lamp: irradiance times distance squared [10,10,10]", &cli_picture_values.lamp_intensity_given,
      false},
-    {"lamp-intensity", 0, CLI_VECTOR, lamp_intensity, 0, 1e18, "R,G,B",
-     "of the lamp: irradiance times distance squared [10,10,10]", NULL, false},
     {"stats", 0, CLI_FLAG, &stats, 0, 0, NULL, "JSON about the picture on standard output (needs -o)", NULL,
      true},
     {0}};
 
-static const cli_option march_options[] = {
-    {"rule", 0, CLI_CHOICE, &rule, 0, 0, "riemann-left|riemann-right|trapezoid|simpson|simpson38|exponential",
-     "rule of integration along a ray [exponential]", &march_given, false},
-    {"steps", 0, CLI_INTEGER, &steps, 1, 100000, "N", "samples along the longest side of all clouds [100]",
-     &march_given, false},
-    {"growth", 0, CLI_NUMBER, &growth, 1, 2, "Q",
-     "each step is Q times the one before, within an interval [1]", &march_given, false},
-    {"jitter", 0, CLI_FLAG, &jitter, 0, 0, NULL, "the exponential rule looks at chance places in its steps",
-     &march_given, false},
-    {"light", 0, CLI_CHOICE, &lighting, 0, 0, "single|powder|octaves|grid",
-     "how a point is lit: sun once; dark rims; halved copies; all scatterings [grid]", &march_given, false},
-    {"light-steps", 0, CLI_INTEGER, &light_steps, 1, 100000, "N",
-     "the same as --steps for the way to the sun [50]", &march_given, false},
-    {"light-resolution", 0, CLI_INTEGER, &light_resolution, 2, 256, "N",
-     "cells of the light grid's longest side [48]", &march_given, false},
-    {0}};
+static const cli_option paper_options[] = {{"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
+                                            "the printed distance formula for the step, not 0.1 m", NULL,
+                                            false},
+                                           {0}};
 
 static const cli_option compare_options[] = {
     {"compare", 0, CLI_FLAG, &compare, 0, 0, NULL,
@@ -70,15 +65,18 @@ static const cli_option compare_options[] = {
 
 static const cli_group groups[] = {{"Picture", cli_picture_options},
                                    {"Rendering", render_options},
-                                   {"Marching (--method march)", march_options},
+                                   {"Opaque things", render_opaque_options},
+                                   {"Marching (--method march)", render_march_options},
+                                   {"The methods of 2018 (--method paper, paper-ndt)", paper_options},
                                    {"Comparing", compare_options},
+                                   {"Scene", cli_scene_options},
                                    {0}};
 
 static const cli_program program = {.name = "neph-render",
-                                    .arguments = "IN.neph | --compare A B",
-                                    .about = "Renders clouds on the CPU to PNG (tone-mapped), EXR or PFM "
-                                             "(linear radiance). An EXR also holds the\n"
-                                             "variance of each pixel.",
+                                    .arguments = "IN | --compare A B",
+                                    .about = "Renders a .neph or a scene (docs/scene.md) on the CPU to PNG "
+                                             "(tone-mapped), EXR or PFM (linear\n"
+                                             "radiance). An EXR also holds the variance of each pixel.",
                                     .examples =
                                         "  neph-render cloud.neph -o cloud.png --spp 256\n"
                                         "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
@@ -144,14 +142,15 @@ static shape_pathtrace_options pathtrace_options(const cli_common *common)
     options.samples = (int)samples;
     options.max_bounces = (int)max_bounces;
     options.seed = common->seed;
-    options.sun_angle = sun_angle;
+    const cli_picture *v = &cli_picture_values;
+    options.sun_angle = v->sun_angle;
     if (noise_given) {
         options.noise = noise;
         options.samples = samples_given ? (int)samples : 1 << 16;
     }
-    options.lamp.position = shape_dvec3_make(lamp[0], lamp[1], lamp[2]);
-    for (int c = 0; c < 3 && lamp_given; c++)
-        options.lamp.intensity[c] = (float)lamp_intensity[c];
+    options.lamp.position = shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]);
+    for (int c = 0; c < 3 && v->lamp_given; c++)
+        options.lamp.intensity[c] = (float)v->lamp_intensity[c];
     options.progress = show_progress;
     return options;
 }
@@ -162,7 +161,7 @@ static shape_image *make_image(const shape_view *view, shape_image_format format
     shape_image *image = shape_image_create(view->width, view->height, &error);
     if (!image)
         cli_fail("%s", error.text);
-    if (format == SHAPE_IMAGE_EXR && method == 0)
+    if (format == SHAPE_IMAGE_EXR && method == REFERENCE)
         cli_check(shape_image_add_layer(image, "variance", &error), &error);
     return image;
 }
@@ -191,47 +190,86 @@ static void report(const picture_outcome *outcome, const shape_image *image, dou
                          "seconds", time, "mean", three(mean), "rel_error", rel_error));
 }
 
-static picture_outcome trace(const cli_common *common, const shape_volume *volume, const shape_view *view,
-                             const shape_light *light, shape_image *image)
+/* What is in the picture, and from where. */
+typedef struct picture {
+    const shape_set *set;
+    const shape_volume *volume;
+    const shape_opaque *opaque;
+    shape_view view;
+    shape_light light;
+    shape_image *image;
+} picture;
+
+static picture_outcome trace(const cli_common *common, const picture *p)
 {
     shape_error error;
     shape_tracer *tracer;
     shape_pathtrace_result result;
     shape_pathtrace_options options = pathtrace_options(common);
-    cli_check(shape_tracer_create(volume, &tracer, &error), &error);
-    cli_check(shape_pathtrace_render(tracer, view, light, &options, image->pixels,
-                                     shape_image_layer_pixels(image, "variance"), &result, &error),
+    options.opaque = p->opaque;
+    cli_check(shape_tracer_create(p->volume, &tracer, &error), &error);
+    cli_check(shape_pathtrace_render(tracer, &p->view, &p->light, &options, p->image->pixels,
+                                     shape_image_layer_pixels(p->image, "variance"), &result, &error),
               &error);
     shape_tracer_destroy(tracer);
-    picture_outcome outcome = {"reference", result.samples,
+    picture_outcome outcome = {method_names[REFERENCE], result.samples,
                                isfinite(result.rel_error) ? result.rel_error : -1};
     return outcome;
 }
 
-static picture_outcome march(const cli_common *common, const shape_set *set, const shape_volume *volume,
-                             const shape_view *view, const shape_light *light, shape_image *image)
+static picture_outcome march(const cli_common *common, const picture *p)
 {
     shape_error error;
     shape_marcher *marcher;
-    shape_march_options options = shape_march_defaults();
     shape_dvec3 min = {0, 0, 0}, max = {1, 1, 1};
-    shape_set_bounds(set, &min, &max);
-    double side = fmax(max.x - min.x, fmax(max.y - min.y, max.z - min.z));
-    options.rule = (shape_rule)rule;
-    options.light = (shape_march_light)lighting;
-    options.step = side / (double)steps;
-    options.light_step = side / (double)light_steps;
-    options.growth = growth;
-    options.jitter = jitter;
-    options.resolution = (int)light_resolution;
+    shape_set_bounds(p->set, &min, &max);
+    shape_march_options options =
+        render_march_make(fmax(max.x - min.x, fmax(max.y - min.y, max.z - min.z)), &p->view);
     options.samples = samples_given ? (int)samples : 1;
     options.seed = common->seed;
+    options.opaque = p->opaque;
     options.progress = show_progress;
-    cli_check(shape_marcher_create(volume, light, view->eye, &options, &marcher, &error), &error);
-    cli_check(shape_march_render(marcher, view, image->pixels, NULL, &error), &error);
+    cli_check(shape_marcher_create(p->volume, &p->light, p->view.eye, &options, &marcher, &error), &error);
+    cli_check(shape_march_render(marcher, &p->view, p->image->pixels, NULL, &error), &error);
     shape_marcher_destroy(marcher);
-    picture_outcome outcome = {"march", options.samples, -1};
+    picture_outcome outcome = {method_names[MARCH], options.samples, -1};
     return outcome;
+}
+
+static picture_outcome paper(const picture *p)
+{
+    shape_error error;
+    shape_paper_options options = shape_paper_defaults();
+    options.sweep = method == PAPER_NDT;
+    options.lod = paper_lod;
+    render_march_resolution(&options.resolution);
+    options.samples = samples_given ? (int)samples : 1;
+    options.progress = show_progress;
+    cli_check(
+        shape_paper_render(p->volume, &p->view, &p->light, &options, p->image->pixels, NULL, NULL, &error),
+        &error);
+    picture_outcome outcome = {method_names[method], options.samples, -1};
+    return outcome;
+}
+
+static void check_method(void)
+{
+    int cells;
+    if (method != MARCH && render_march_given())
+        cli_wrong("rules, steps, --jitter, alpha and the light options belong to --method march");
+    if (method == REFERENCE && render_march_resolution(&cells))
+        cli_wrong("--light-resolution: --method reference has no light grid");
+    if (method == MARCH)
+        render_march_check(render_opaque_given());
+    if (method != REFERENCE &&
+        (noise_given || cli_picture_values.lamp_given || bounces_given || cli_picture_values.sun_angle_given))
+        cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
+    if (method != REFERENCE && samples_given && samples > 4096)
+        cli_wrong("--spp %d: --method %s takes at most 4096", (int)samples, method_names[method]);
+    if (method >= PAPER && render_opaque_given())
+        cli_wrong("--mesh: the methods of 2018 have no opaque things (choose reference or march)");
+    if (method < PAPER && paper_lod)
+        cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
 }
 
 static void check_command(const cli_common *common)
@@ -242,39 +280,55 @@ static void check_command(const cli_common *common)
         cli_wrong("--stats writes to standard output (name the picture with -o)");
     if (tolerance_given)
         cli_wrong("--tolerance belongs to --compare");
-    if (method == 0 && march_given)
-        cli_wrong("--rule, --steps, --growth, --jitter and the light options belong to --method march");
-    if (method == 1 && (noise_given || lamp_given || bounces_given || angle_given))
-        cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
-    if (jitter && rule != SHAPE_RULE_EXPONENTIAL)
-        cli_wrong("--jitter goes with --rule exponential only");
-    if (method == 1 && samples_given && samples > 4096)
-        cli_wrong("--spp %d: --method march takes at most 4096", (int)samples);
+    check_method();
+}
+
+/* Camera and light of a scene; what this method leaves out of them is said. */
+static void use_scene(const cli_input *input)
+{
+    if (!input->scene)
+        return;
+    cli_picture_use_scene(input->scene);
+    if (method != REFERENCE && input->scene->lamp_given)
+        cli_say("note: --method %s does not show the scene's lamp (--method reference does)",
+                method_names[method]);
+    if (method != REFERENCE && input->scene->sun_angle_given && input->scene->sun_angle > 0)
+        cli_say("note: --method %s takes the sun as a direction, not a disc (--method reference has it)",
+                method_names[method]);
 }
 
 static void render(const cli_common *common)
 {
     shape_error error;
-    shape_view view;
-    shape_light light;
     shape_volume *volume;
+    picture p;
     check_command(common);
     shape_image_format format = choose_format(common);
-    shape_set *set = cli_read_set(common->arguments[0]);
-    cli_picture_apply(set, &view, &light);
-    shape_image *image = make_image(&view, format);
+    cli_save_check(common);
+    cli_input input = cli_input_read(common->arguments[0]);
+    const shape_set *set = input.set;
+    use_scene(&input);
+    shape_opaque *opaque = render_opaque_read();
+    cli_picture_apply(set, &p.view, &p.light);
+    p.image = make_image(&p.view, format);
     double start = seconds();
     cli_check(shape_volume_create(set, &volume, &error), &error);
-    picture_outcome outcome = method ? march(common, set, volume, &view, &light, image)
-                                     : trace(common, volume, &view, &light, image);
+    p.set = set;
+    p.volume = volume;
+    p.opaque = opaque;
+    picture_outcome outcome = method == REFERENCE ? trace(common, &p)
+                              : method == MARCH   ? march(common, &p)
+                                                  : paper(&p);
     cli_progress("tracing", 1);
     shape_image_options image_options = shape_image_options_defaults();
-    image_options.exposure = view.exposure;
-    write_image(common, image, format, &image_options);
-    report(&outcome, image, seconds() - start);
-    shape_image_destroy(image);
+    image_options.exposure = p.view.exposure;
+    write_image(common, p.image, format, &image_options);
+    report(&outcome, p.image, seconds() - start);
+    shape_image_destroy(p.image);
     shape_volume_destroy(volume);
-    shape_set_destroy(set);
+    shape_opaque_destroy(opaque);
+    cli_picture_save_scene(&input, &p.view, &p.light);
+    cli_input_free(&input);
 }
 
 /* --- comparing --- */

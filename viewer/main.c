@@ -8,6 +8,8 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "cli_scene.h"
+#include "shape/file.h"
 #include "shape/image.h"
 #include "view.h"
 
@@ -74,19 +76,24 @@ static const cli_option motion_options[] = {
      "of the sun, for --day: 23.44 in June, -23.44 in December [0]", NULL, true},
     {0}};
 
-static const cli_group groups[] = {
-    {"View", view_options}, {"Picture", cli_picture_options}, {"Time", motion_options}, {0}};
+static const cli_group groups[] = {{"View", view_options},
+                                   {"Picture", cli_picture_options},
+                                   {"Time", motion_options},
+                                   {"Scene", cli_scene_options},
+                                   {0}};
 
 static const cli_program program = {
     .name = "neph-view",
-    .arguments = "CLOUD.neph|GRAMMAR.lsys",
-    .about = "Shows a cloud in a window, or writes pictures of it without one. \"-\" reads standard input. A "
-             "grammar\n"
-             "is derived as neph-lsys does it, by --seed. The window watches the file and shows it anew when "
-             "it is\n"
-             "saved. In it: Tab for the panel, H for all keys; drag to turn, right drag to look round, wheel "
-             "to come\n"
-             "nearer, W A S D E Q to fly, + and - for the exposure, Home for the first view, Esc to quit.",
+    .arguments = "IN",
+    .about =
+        "Shows a .neph, a grammar or a scene (docs/scene.md) in a window, or writes pictures of it without "
+        "one.\n"
+        "\"-\" reads standard input. --save-scene writes what the window shows when it is closed. A grammar\n"
+        "is derived as neph-lsys does it, by --seed. The window watches the file and shows it anew when it "
+        "is\n"
+        "saved. In it: Tab for the panel, H for all keys; drag to turn, right drag to look round, wheel to "
+        "come\n"
+        "nearer, W A S D E Q to fly, + and - for the exposure, Home for the first view, Esc to quit.",
     .examples = "  neph-view castellanus.lsys\n"
                 "  neph-lsys castellanus.lsys | neph-view - --headless --size 1280x720 -o castellanus.png\n"
                 "  neph-view castellanus.neph --frames 0..99 --wind 1,0,0 --shear 0.02 -o frame.%04d.png\n"
@@ -208,16 +215,50 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     shape_gl_context_destroy(context);
 }
 
+/* One line a mistake, then the end. */
+static void fail_lines(char *mistakes)
+{
+    for (char *line = strtok(mistakes, "\n"); line; line = strtok(NULL, "\n"))
+        cli_error("%s", line);
+    exit(CLI_FAILED);
+}
+
 static shape_set *read_source(const char *path, const view_generator *generator, view_contents *contents)
 {
     shape_error error;
     static char mistakes[16384];
-    if (view_source_read(path, generator, contents, mistakes, sizeof mistakes, &error)) {
-        for (char *line = strtok(mistakes, "\n"); line; line = strtok(NULL, "\n"))
-            cli_error("%s", line);
-        exit(CLI_FAILED);
-    }
+    if (view_source_read(path, generator, contents, mistakes, sizeof mistakes, &error))
+        fail_lines(mistakes);
     return contents->set;
+}
+
+/* What is to be shown: a scene, a .neph or a grammar, told apart by what is in it. */
+static cli_input read_input(view_job *job, view_contents *contents)
+{
+    cli_input input = {.path = job->path};
+    const char *shown = strcmp(job->path, "-") ? job->path : "standard input";
+    unsigned char *bytes;
+    shape_error error;
+    static char mistakes[16384];
+    cli_check(shape_file_read(job->path, 0x40000000, &bytes, &input.size, &error), &error);
+    if (shape_scene_is(bytes, input.size)) {
+        cli_check(shape_scene_decode(bytes, input.size, shown, &input.scene, &error), &error);
+        input.set = cli_scene_make(input.scene, job->path);
+        job->scene = true;
+        contents->used = job->generator;
+    } else {
+        if (view_source_decode(job->path, bytes, input.size, &job->generator, contents, mistakes,
+                               sizeof mistakes, &error))
+            fail_lines(mistakes);
+        input.set = contents->set;
+    }
+    free(bytes);
+    job->generator = contents->used;
+    job->generator.seed = job->seed;
+    job->grammar = contents->grammar;
+    if (job->grammar && cli_save_wanted())
+        cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
+    return input;
 }
 
 /* A wrong command is told before the work, not after. */
@@ -295,10 +336,13 @@ int main(int argc, char **argv)
     shape_morph *morph = NULL;
     check_command(&common, &frames);
     plan(&job, &common);
-    job.set = read_source(job.path, &job.generator, &contents);
-    job.generator = contents.used;
-    job.generator.seed = common.seed;
-    job.grammar = contents.grammar;
+    cli_save_check(&common);
+    cli_input input = read_input(&job, &contents);
+    job.set = input.set;
+    if (input.scene)
+        cli_picture_use_scene(input.scene);
+    if (cli_picture_values.lamp_given)
+        cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     cli_picture_apply(job.set, &job.view, &job.light);
     memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
     if (morph_path) {
@@ -318,6 +362,7 @@ int main(int argc, char **argv)
     view_job_free(&job);
     shape_morph_destroy(morph);
     shape_set_destroy(other.set);
-    shape_set_destroy(contents.set);
+    cli_picture_save_scene(&input, &job.view, &job.light);
+    cli_input_free(&input);
     return cli_finish(&common);
 }

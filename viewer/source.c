@@ -105,21 +105,18 @@ static shape_status read_grammar(const char *path, const char *shown, const unsi
     return status;
 }
 
-shape_status view_source_read(const char *path, const view_generator *generator, view_contents *contents,
-                              char *mistakes, size_t room, shape_error *error)
+shape_status view_source_decode(const char *path, const unsigned char *bytes, size_t size,
+                                const view_generator *generator, view_contents *contents, char *mistakes,
+                                size_t room, shape_error *error)
 {
     const char *shown = strcmp(path, "-") ? path : "standard input";
-    unsigned char *bytes;
-    size_t size;
+    shape_status status;
     memset(contents, 0, sizeof *contents);
     mistakes[0] = 0;
-    shape_status status = shape_file_read(path, MAX_SET_FILE, &bytes, &size, error);
-    if (!status && is_grammar(path, bytes, size)) {
+    if (is_grammar(path, bytes, size)) {
         status = read_grammar(path, shown, bytes, size, generator, contents, mistakes, room, error);
-        free(bytes);
-    } else if (!status) {
+    } else {
         status = shape_neph_decode(bytes, size, &contents->set, error);
-        free(bytes);
         if (status) {
             shape_error inner = *error;
             shape_error_set(error, status, "%s: %.400s", shown, inner.text);
@@ -127,5 +124,21 @@ shape_status view_source_read(const char *path, const view_generator *generator,
     }
     if (status && !mistakes[0])
         snprintf(mistakes, room, "%s", error->text);
+    return status;
+}
+
+shape_status view_source_read(const char *path, const view_generator *generator, view_contents *contents,
+                              char *mistakes, size_t room, shape_error *error)
+{
+    unsigned char *bytes;
+    size_t size;
+    memset(contents, 0, sizeof *contents);
+    shape_status status = shape_file_read(path, MAX_SET_FILE, &bytes, &size, error);
+    if (status) {
+        snprintf(mistakes, room, "%s", error->text);
+        return status;
+    }
+    status = view_source_decode(path, bytes, size, generator, contents, mistakes, room, error);
+    free(bytes);
     return status;
 }

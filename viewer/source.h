@@ -29,6 +29,10 @@ typedef struct view_contents {
  * the bytes. Mistakes of a grammar: "path:line:column: text", all of them (as far as there is room), one a line. */
 shape_status view_source_read(const char *path, const view_generator *generator, view_contents *contents,
                               char *mistakes, size_t room, shape_error *error);
+/* The same of a file's bytes that have been read already. */
+shape_status view_source_decode(const char *path, const unsigned char *bytes, size_t size,
+                                const view_generator *generator, view_contents *contents, char *mistakes,
+                                size_t room, shape_error *error);
 
 #ifdef __cplusplus
 }

@@ -21,7 +21,7 @@ typedef struct view_job {
     shape_gl_options options;
     const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
     view_generator generator;              /* of a grammar */
-    bool grammar, alpha;
+    bool grammar, scene, alpha;
     int samples; /* of a picture without a window, and of a window at rest */
     double load_ms;
     uint64_t seed; /* as given */

@@ -526,8 +526,8 @@ static shape_status start_threads(window_state *w, GLFWwindow *hidden, shape_err
     w->renderer = view_renderer_start(&start, error);
     if (!w->renderer)
         return error->status;
-    /* A morph's pairs are made once, of the file as it was opened. */
-    if (strcmp(job->path, "-") && !job->morph) {
+    /* A morph's pairs are made once, of the file as it was opened; so is a scene. */
+    if (strcmp(job->path, "-") && !job->morph && !job->scene) {
         w->watch = view_watch_start(job->path, &job->generator, wake, error);
         if (!w->watch)
             return error->status;
@@ -581,6 +581,13 @@ shape_status view_window(view_job *job, shape_error *error)
     shape_status status = w->window ? show(w, error) : no_window("no window with OpenGL 3.3", error);
     if (w->window)
         glfwDestroyWindow(w->window);
+    /* A saved scene looks as the window did. */
+    view_course still = w->state.course;
+    memset(&w->state.course, 0, sizeof w->state.course);
+    w->state.course.day_runs = still.day_runs;
+    w->state.course.day = still.day;
+    job->view = view_state_view(&w->state, job->view.width, job->view.height);
+    job->light = view_state_light(&w->state);
     free(w);
     glfwTerminate();
     return status;

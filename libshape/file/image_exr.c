@@ -136,7 +136,21 @@ static exr_result_t write_header(exr_context_t context, const shape_image *image
     return result ? result : exr_write_header(context);
 }
 
-static exr_result_t write_chunk(exr_context_t context, exr_encode_pipeline_t *pipeline,
+typedef exr_result_t (*exr_step)(exr_encode_pipeline_t *pipeline);
+
+/* A reader takes a chunk of exactly its raw size to be raw, but the core (3.1) keeps a compressed one of that size: such a
+ * chunk must be stored as it was. */
+static exr_result_t compress_chunk(exr_encode_pipeline_t *pipeline)
+{
+    exr_step compress = *(exr_step *)pipeline->encoding_user_data;
+    exr_result_t result = compress(pipeline);
+    if (!result && pipeline->compressed_buffer && pipeline->compressed_buffer != pipeline->packed_buffer &&
+        pipeline->compressed_bytes == pipeline->packed_bytes)
+        memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, pipeline->packed_bytes);
+    return result;
+}
+
+static exr_result_t write_chunk(exr_context_t context, exr_encode_pipeline_t *pipeline, exr_step *compress,
                                 const shape_image *image, int y)
 {
     exr_chunk_info_t chunk;
@@ -153,8 +167,13 @@ static exr_result_t write_chunk(exr_context_t context, exr_encode_pipeline_t *pi
         channel->user_line_stride = (int32_t)(step * sizeof(float)) * image->width;
         channel->encode_from_ptr = (const uint8_t *)(start + (size_t)y * (size_t)image->width * step);
     }
-    if (!result && first)
+    if (!result && first) {
         result = exr_encoding_choose_default_routines(context, 0, pipeline);
+        *compress = pipeline->compress_fn;
+        if (pipeline->compress_fn)
+            pipeline->compress_fn = compress_chunk;
+    }
+    pipeline->encoding_user_data = compress;
     return result ? result : exr_encoding_run(context, 0, pipeline);
 }
 
@@ -162,12 +181,13 @@ static exr_result_t write_image(exr_context_t context, const shape_image *image,
                                 const shape_image_options *options)
 {
     exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_step compress = NULL;
     int32_t lines = 0;
     exr_result_t result = write_header(context, image, options);
     if (!result)
         result = exr_get_scanlines_per_chunk(context, 0, &lines);
     for (int y = 0; y < image->height && !result; y += lines)
-        result = write_chunk(context, &pipeline, image, y);
+        result = write_chunk(context, &pipeline, &compress, image, y);
     exr_encoding_destroy(context, &pipeline);
     return result;
 }

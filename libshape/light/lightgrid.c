@@ -87,22 +87,26 @@ typedef struct sun_pass {
     const shape_volume_cloud *cloud;
     shape_dvec3 sun;
     float step;
+    const shape_opaque *opaque;
 } sun_pass;
 
 static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y, int z,
                               shape_candidates *scratch, shape_error *error)
 {
+    const double most = 60000; /* a half-float's range */
     float *row = grid->cells + ((size_t)z * (size_t)grid->size[1] + (size_t)y) * (size_t)grid->size[0] *
                                    SHAPE_LIGHTGRID_VALUES;
     for (int x = 0; x < grid->size[0]; x++) {
         shape_vec3 p = cell_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
         shape_dvec3 world = shape_frame_point(&pass->cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
-        double depth;
-        shape_status status = shape_volume_optical_depth(pass->volume, world, pass->sun, 0, 1e30f, pass->step,
-                                                         scratch, &depth, error);
+        double depth = most;
+        shape_status status = SHAPE_OK;
+        if (!shape_opaque_blocks(pass->opaque, world, pass->sun, INFINITY))
+            status = shape_volume_optical_depth(pass->volume, world, pass->sun, 0, 1e30f, pass->step, scratch,
+                                                &depth, error);
         if (status)
             return status;
-        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, 60000); /* a half-float's range */
+        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, most);
     }
     return SHAPE_OK;
 }
@@ -298,7 +302,7 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     int threads = options->threads > 0 ? options->threads : omp_get_max_threads();
     const shape_volume_cloud *c = &volume->clouds[cloud];
     shape_status status = lay_out(c, options->resolution, grid, error);
-    sun_pass pass = {volume, c, light->sun, choose_step(volume, options->step)};
+    sun_pass pass = {volume, c, light->sun, choose_step(volume, options->step), options->opaque};
     if (!status)
         status = march_to_sun(&pass, threads, grid, error);
     if (!status && options->scattering)

@@ -470,19 +470,18 @@ static shape_status fill_cells(majorant_grid *grid, const found_list *found, sha
     return SHAPE_OK;
 }
 
-/* The edge that a cell should have for a cloud [m, world]: most of a lattice cell, since within one the noise changes
- * little, or a part of a primitive where there is no noise. */
+/* The edge that a cell should have for a cloud [m, world]: a little more than a lattice cell, as finer ones bound the noise
+ * better but take longer to walk through, and a part of the whole at the most. */
 static double wanted_cell(const shape_volume_cloud *cloud)
 {
     double scale = cbrt(fabs(shape_frame_determinant(&cloud->frame)));
-    double size = 0.6 * (double)cloud->field.noise_scale;
-    if (cloud->field.model == SHAPE_MODEL_UNIFORM || !(size > 0)) {
-        double sides = ((double)cloud->box.max.x - (double)cloud->box.min.x) +
-                       ((double)cloud->box.max.y - (double)cloud->box.min.y) +
-                       ((double)cloud->box.max.z - (double)cloud->box.min.z);
+    double sides = ((double)cloud->box.max.x - (double)cloud->box.min.x) +
+                   ((double)cloud->box.max.y - (double)cloud->box.min.y) +
+                   ((double)cloud->box.max.z - (double)cloud->box.min.z);
+    double size = 1.3 * (double)cloud->field.noise_scale;
+    if (cloud->field.model == SHAPE_MODEL_UNIFORM || !(size > 0))
         size = sides / 3 / 32;
-    }
-    return size * scale;
+    return fmin(size, sides / 3 / 16) * scale;
 }
 
 /* World box and resolution. False where there is nothing to see. */

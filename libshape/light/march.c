@@ -1,20 +1,19 @@
 /* Marched rendering: the union of the clouds' intervals along each ray, cut into panels, each summed by a rule. Steps are
- * fixed or grow geometrically (Páleník 2016 Eq. 3.17) within an interval, whose last step ends where it does, so that no
- * cutting planes appear (Eq. 4.1, 4.2). */
+ * fixed, grow geometrically (Páleník 2016 Eq. 3.17) or with the distance (section 3.4), and fill an interval exactly, so
+ * that no cutting planes appear (chapter 4 there). */
 #include "light/march.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
-#include "base/memory.h"
+#include "light/rows.h"
 
 /* Beyond that depth nothing is seen: 1e-8. */
 static const double deep_enough = 18.4;
 enum { MAX_PANELS = 100000 };
+
+/* --- options --- */
 
 shape_march_options shape_march_defaults(void)
 {
@@ -22,68 +21,147 @@ shape_march_options shape_march_defaults(void)
     memset(&options, 0, sizeof options);
     options.rule = SHAPE_RULE_EXPONENTIAL;
     options.light = SHAPE_MARCH_GRID;
-    options.growth = 1;
+    options.growth = 1.02;
+    options.share = 0.01;
     options.resolution = 48;
     options.samples = 1;
+    options.powder = 2;
+    options.shade = 1;
+    options.forward = 0.5;
+    options.alpha_power = 1;
     options.seed = 1;
     return options;
 }
 
+static const char *find_wrong_choice(const shape_march_options *o)
+{
+    if (o->rule < SHAPE_RULE_RIEMANN_LEFT || o->rule > SHAPE_RULE_EXPONENTIAL)
+        return "rule: there is none of that number";
+    if (o->light < SHAPE_MARCH_SINGLE || o->light > SHAPE_MARCH_GRID)
+        return "light: there is none of that number";
+    if (o->shadow < SHAPE_SHADOW_MARCH || o->shadow > SHAPE_SHADOW_GRID)
+        return "shadow: there is none of that number";
+    if (o->stepping < SHAPE_STEP_FIXED || o->stepping > SHAPE_STEP_EXPONENTIAL)
+        return "stepping: there is none of that number";
+    if (o->jitter < SHAPE_JITTER_NONE || o->jitter > SHAPE_JITTER_BLUE)
+        return "jitter: there is none of that number";
+    if (o->end < SHAPE_END_CUT || o->end > SHAPE_END_ADAPT)
+        return "end: there is none of that number";
+    if (o->silver && (o->light == SHAPE_MARCH_GRID || o->light == SHAPE_MARCH_OCTAVES))
+        return "silver: the lights grid and octaves have a phase function of their own";
+    return NULL;
+}
+
+static const char *find_wrong_number(const shape_march_options *o)
+{
+    if (!(o->step >= 0 && o->step < 1e9))
+        return "step: must be from 0 to 1e9 metres";
+    if (!(o->light_step >= 0 && o->light_step < 1e9))
+        return "light_step: must be from 0 to 1e9 metres";
+    if (!(o->growth >= 1 && o->growth <= 2))
+        return "growth: must be from 1 to 2";
+    if (!(o->share > 0 && o->share <= 1))
+        return "share: must be above 0 and at most 1";
+    if (o->resolution < 2 || o->resolution > 256)
+        return "resolution: must be from 2 to 256";
+    if (o->samples < 1 || o->samples > 4096)
+        return "samples: must be from 1 to 4096";
+    if (!(o->powder >= 0 && o->powder <= 1000))
+        return "powder: must be from 0 to 1000";
+    if (!(o->shade >= 0 && o->shade <= 1))
+        return "shade: must be from 0 to 1";
+    if (!(o->forward >= 0 && o->forward <= 1))
+        return "forward: must be from 0 to 1";
+    for (int c = 0; c < 3; c++)
+        if (!(o->emission[c] >= 0 && o->emission[c] <= 1e9f))
+            return "emission: must be from 0 to 1e9";
+    if (!(o->lock >= 0 && o->lock <= 1e9))
+        return "lock: must be from 0 to 1e9 points a metre";
+    if (!(o->alpha_power >= 0.01 && o->alpha_power <= 100))
+        return "alpha_power: must be from 0.01 to 100";
+    if (!(o->alpha_peel >= 0 && o->alpha_peel <= 1))
+        return "alpha_peel: must be from 0 to 1";
+    return NULL;
+}
+
 shape_status shape_march_check(const shape_march_options *options, shape_error *error)
 {
-    const char *wrong = NULL;
-    if (options->rule < SHAPE_RULE_RIEMANN_LEFT || options->rule > SHAPE_RULE_EXPONENTIAL)
-        wrong = "rule: there is none of that number";
-    else if (options->light < SHAPE_MARCH_SINGLE || options->light > SHAPE_MARCH_GRID)
-        wrong = "light: there is none of that number";
-    else if (!(options->step >= 0 && options->step < 1e9))
-        wrong = "step: must be from 0 to 1e9 metres";
-    else if (!(options->light_step >= 0 && options->light_step < 1e9))
-        wrong = "light_step: must be from 0 to 1e9 metres";
-    else if (!(options->growth >= 1 && options->growth <= 2))
-        wrong = "growth: must be from 1 to 2";
-    else if (options->resolution < 2 || options->resolution > 256)
-        wrong = "resolution: must be from 2 to 256";
-    else if (options->samples < 1 || options->samples > 4096)
-        wrong = "samples: must be from 1 to 4096";
+    const char *wrong = find_wrong_choice(options);
+    if (!wrong)
+        wrong = find_wrong_number(options);
     return wrong ? shape_error_set(error, SHAPE_ERROR_ARGUMENT, "march %s", wrong) : SHAPE_OK;
 }
 
-/* The longest side of the world box around all clouds. */
-static double longest_side(const shape_volume *volume)
+/* --- a marcher --- */
+
+/* The world box around all clouds. */
+static void find_box(shape_marcher *m)
 {
-    shape_dvec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < volume->cloud_count; i++) {
+    m->low = shape_dvec3_make(INFINITY, INFINITY, INFINITY);
+    m->high = shape_dvec3_scale(m->low, -1);
+    for (size_t i = 0; i < m->volume->cloud_count; i++) {
+        const shape_volume_cloud *cloud = &m->volume->clouds[i];
         shape_dvec3 a, b;
-        if (shape_box_is_empty(volume->clouds[i].box))
+        if (shape_box_is_empty(cloud->box))
             continue;
-        shape_frame_box(&volume->clouds[i].frame, volume->clouds[i].box, &a, &b);
-        low = shape_dvec3_make(fmin(low.x, a.x), fmin(low.y, a.y), fmin(low.z, a.z));
-        high = shape_dvec3_make(fmax(high.x, b.x), fmax(high.y, b.y), fmax(high.z, b.z));
+        shape_frame_box(&cloud->frame, cloud->box, &a, &b);
+        m->low = shape_dvec3_make(fmin(m->low.x, a.x), fmin(m->low.y, a.y), fmin(m->low.z, a.z));
+        m->high = shape_dvec3_make(fmax(m->high.x, b.x), fmax(m->high.y, b.y), fmax(m->high.z, b.z));
     }
-    double side = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
-    return side > 0 ? side : 1;
+    if (!(m->low.x <= m->high.x))
+        m->low = m->high = shape_dvec3_make(0, 0, 0);
+}
+
+static void choose_steps(shape_marcher *m)
+{
+    shape_dvec3 side = shape_dvec3_sub(m->high, m->low);
+    double longest = fmax(side.x, fmax(side.y, side.z));
+    longest = longest > 0 ? longest : 1;
+    m->step = m->options.step > 0 ? m->options.step : longest / 100;
+    m->light_step = m->options.light_step > 0 ? m->options.light_step : 2 * m->step;
+}
+
+/* The grid that the options' light looks up, if any. */
+static shape_status build_grid(shape_marcher *m, size_t i, shape_lightgrid *grid, shape_error *error)
+{
+    shape_lightgrid_options options = shape_lightgrid_defaults();
+    options.resolution = m->options.resolution;
+    options.opaque = m->options.opaque;
+    if (m->options.light == SHAPE_MARCH_GRID)
+        return shape_lightgrid_build(m->volume, i, &m->light, &options, grid, error);
+    if (m->options.light == SHAPE_MARCH_TWO_PASS)
+        return shape_lightgrid_build_2018(m->volume, i, &m->light, options.resolution, (float)m->light_step,
+                                          grid, error);
+    if (m->options.shadow != SHAPE_SHADOW_GRID || !march_needs_depth(m->options.light))
+        return SHAPE_OK;
+    options.scattering = false;
+    options.opaque = NULL; /* asked at the point itself */
+    return shape_lightgrid_build(m->volume, i, &m->light, &options, grid, error);
 }
 
 static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, shape_error *error)
 {
     march_cloud *cloud = &m->clouds[i];
-    shape_lightgrid_options options = shape_lightgrid_defaults();
-    float upper[3], lower[3];
     cloud->cloud = &m->volume->clouds[i];
-    if (m->options.light != SHAPE_MARCH_GRID || shape_box_is_empty(cloud->cloud->box))
+    if (shape_box_is_empty(cloud->cloud->box))
         return SHAPE_OK;
-    options.resolution = m->options.resolution;
-    shape_status status = shape_lightgrid_build(m->volume, i, &m->light, &options, &cloud->grid, error);
-    if (status)
+    shape_status status = build_grid(m, i, &cloud->grid, error);
+    if (status || m->options.light != SHAPE_MARCH_GRID)
         return status;
     const int *n = cloud->grid.size;
     cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 4 * sizeof *cloud->seen);
     if (!cloud->seen)
         return shape_error_memory(error);
-    shape_sky_mean(&m->sky, upper, lower);
-    shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, upper, lower, eye, cloud->seen);
+    shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, m->upper, m->lower, eye, cloud->seen);
     return SHAPE_OK;
+}
+
+static shape_status make_blue(shape_marcher *m, shape_error *error)
+{
+    if (m->options.jitter != SHAPE_JITTER_BLUE)
+        return SHAPE_OK;
+    m->blue = malloc(BLUENOISE_COUNT * sizeof *m->blue);
+    return m->blue ? bluenoise_make(m->options.seed, m->blue, error) : shape_error_memory(error);
 }
 
 shape_status shape_marcher_create(const shape_volume *volume, const shape_light *light, shape_dvec3 eye,
@@ -102,16 +180,14 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
         free(m);
         return shape_error_memory(error);
     }
-    float upper[3], lower[3];
     m->volume = volume;
     m->light = *light;
     m->sky = shape_sky_make(light);
     m->options = *options;
-    m->step = options->step > 0 ? options->step : longest_side(volume) / 100;
-    m->light_step = options->light_step > 0 ? options->light_step : 2 * m->step;
-    shape_sky_mean(&m->sky, upper, lower);
-    for (int c = 0; c < 3; c++)
-        m->ambient[c] = (upper[c] + lower[c]) / 2;
+    find_box(m);
+    choose_steps(m);
+    shape_sky_mean(&m->sky, m->upper, m->lower);
+    status = make_blue(m, error);
     for (size_t i = 0; i < volume->cloud_count && !status; i++)
         status = light_cloud(m, i, eye, error);
     if (status) {
@@ -131,123 +207,172 @@ void shape_marcher_destroy(shape_marcher *m)
         free(m->clouds[i].seen);
     }
     free(m->clouds);
+    free(m->blue);
     free(m);
 }
 
 void shape_march_scratch_free(shape_march_scratch *scratch)
 {
-    for (size_t i = 0; i < scratch->view_count; i++)
-        shape_candidates_free(&scratch->views[i]);
-    free(scratch->views);
-    free(scratch->edges);
+    march_path_free(&scratch->view);
+    march_path_free(&scratch->sun);
     shape_candidates_free(&scratch->shadow);
     memset(scratch, 0, sizeof *scratch);
 }
 
-static shape_status prepare_scratch(shape_march_scratch *scratch, size_t clouds, shape_error *error)
+/* --- a ray --- */
+
+/* An interval cut into panels: where panel x ends, for a real x from 0 to `panels`. */
+typedef struct panels {
+    shape_march_stepping stepping;
+    double from, length, growth, count;
+} panels;
+
+/* z_k = (1 + h)^k z_0, with h made so that whole panels fill the interval (Páleník 2016 Eq. 3.16). */
+static panels cut_exponentially(double from, double to, double share)
 {
-    if (scratch->view_count == clouds)
-        return SHAPE_OK;
-    shape_march_scratch_free(scratch);
-    scratch->views = calloc(clouds + 1, sizeof *scratch->views);
-    if (!scratch->views)
-        return shape_error_memory(error);
-    scratch->view_count = clouds;
-    return SHAPE_OK;
+    panels p = {SHAPE_STEP_EXPONENTIAL, from, to - from, 1, 1};
+    p.count = fmin(fmax(ceil(log(to / from) / log1p(share) * (1 - 1e-9)), 1), MAX_PANELS);
+    p.growth = pow(to / from, 1 / p.count);
+    return p;
 }
 
-static int compare_edges(const void *a, const void *b)
+/* Equal panels, or growing ones whose first is made to fit (Eq. 4.2). */
+static panels cut_by_growth(double from, double to, double panel, double q)
 {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
+    panels p = {q > 1 ? SHAPE_STEP_GEOMETRIC : SHAPE_STEP_FIXED, from, to - from, q, 1};
+    double wanted = q > 1 ? log1p(p.length / panel * (q - 1)) / log(q) : p.length / panel;
+    p.count = fmin(fmax(ceil(wanted * (1 - 1e-9)), 1), MAX_PANELS);
+    return p;
 }
 
-/* The joined intervals of all clouds on the ray, as pairs of edges sorted by their start. */
-static shape_status find_intervals(march_ray *ray, size_t *count)
+static double panel_end(const panels *p, double x)
 {
-    shape_march_scratch *scratch = ray->scratch;
-    *count = 0;
-    for (size_t i = 0; i < scratch->view_count; i++) {
-        const shape_volume_cloud *cloud = ray->marcher->clouds[i].cloud;
-        shape_ray local = shape_volume_ray(cloud, ray->origin, ray->direction);
-        shape_candidates *found = &scratch->views[i];
-        float t0 = 0, t1 = INFINITY, a, b;
-        found->count = 0;
-        if (!shape_box_intersect(cloud->box, local, &t0, &t1))
-            continue;
-        if (shape_cloud_candidates(cloud, local, t0, t1, found, ray->error))
-            return SHAPE_ERROR_MEMORY;
-        size_t first, next = 0;
-        while (shape_candidates_join(found, t0, t1, &first, &next, &a, &b)) {
-            if (shape_array_reserve((void **)&scratch->edges, &scratch->edge_capacity, *count + 2,
-                                    sizeof(float), ray->error))
-                return SHAPE_ERROR_MEMORY;
-            scratch->edges[(*count)++] = a;
-            scratch->edges[(*count)++] = b;
-        }
-    }
-    if (scratch->view_count > 1 && *count > 2)
-        qsort(scratch->edges, *count / 2, 2 * sizeof(float), compare_edges);
-    return SHAPE_OK;
+    if (x >= p->count)
+        return p->from + p->length;
+    if (p->stepping == SHAPE_STEP_EXPONENTIAL)
+        return p->from * pow(p->growth, x);
+    double share = p->stepping == SHAPE_STEP_GEOMETRIC
+                       ? (pow(p->growth, x) - 1) / (pow(p->growth, p->count) - 1)
+                       : x / p->count;
+    return p->from + p->length * share;
 }
 
-/* Marches one interval by panels of equal or growing width that fill it exactly. */
-static void march_interval(march_ray *ray, float from, float to)
+/* Marches the panels up to `end`, where something opaque stands. */
+static void march_panels(march_ray *ray, const panels *p, float end)
 {
-    const shape_march_options *options = &ray->marcher->options;
-    double q = options->growth, panel = ray->marcher->step * march_panel_steps(options->rule), length;
-    length = (double)to - (double)from;
-    double wanted = q > 1 ? log1p(length / panel * (q - 1)) / log(q) : length / panel;
-    int panels = (int)fmin(ceil(wanted * (1 - 1e-9)), MAX_PANELS);
-    panels = panels < 1 ? 1 : panels;
-    double whole = q > 1 ? pow(q, panels) - 1 : panels;
-    float a = from;
-    for (int i = 1; i <= panels && ray->depth < deep_enough; i++) {
-        double share = (q > 1 ? pow(q, i) - 1 : i) / whole;
-        float b = i < panels ? (float)((double)from + length * share) : to;
-        march_panel(ray, options->rule, a, b);
+    shape_rule rule = ray->marcher->options.rule;
+    float a = (float)p->from;
+    /* A step that begins later makes the first one shorter and adds one. */
+    for (double x = ray->first; ray->depth < deep_enough && a < end; x++) {
+        float b = fminf((float)panel_end(p, x), end);
+        if (b > a)
+            march_panel(ray, rule, a, b);
         a = b;
+        if (x >= p->count)
+            break;
     }
+}
+
+/* From the ray to the grid of points that starts are locked to: the shift of the interval's first point. */
+static shape_dvec3 lock_shift(const march_ray *ray, float from)
+{
+    double f = ray->marcher->options.lock;
+    shape_dvec3 p = shape_dvec3_add(ray->origin, shape_dvec3_scale(ray->direction, (double)from));
+    shape_dvec3 q = shape_dvec3_make(floor(p.x * f) / f, floor(p.y * f) / f, floor(p.z * f) / f);
+    return shape_dvec3_sub(q, p);
+}
+
+/* Marches one interval by panels that fill it exactly. */
+static void march_interval(march_ray *ray, float from, float to, float end)
+{
+    const shape_marcher *m = ray->marcher;
+    const shape_march_options *o = &m->options;
+    int steps = march_panel_steps(o->rule);
+    if (o->end == SHAPE_END_ADAPT)
+        to = fminf(to, end);
+    if (o->lock > 0)
+        ray->shift = lock_shift(ray, from);
+    if (o->stepping == SHAPE_STEP_EXPONENTIAL) {
+        /* Near the eye steps would shrink to nothing: one does. */
+        float near = fminf(to, fmaxf((float)(m->step * steps), 1e-6f * to));
+        if (from < near) {
+            march_panels(ray, &(panels){SHAPE_STEP_FIXED, (double)from, (double)(near - from), 1, 1}, end);
+            from = near;
+        }
+        panels p = cut_exponentially((double)from, (double)to, pow(1 + o->share, steps) - 1);
+        if (from < to)
+            march_panels(ray, &p, end);
+        return;
+    }
+    panels p = cut_by_growth((double)from, (double)to, m->step * steps,
+                             o->stepping == SHAPE_STEP_GEOMETRIC ? o->growth : 1);
+    march_panels(ray, &p, end);
+}
+
+/* Coverage raised to a power, and none where there is little (Páleník 2016 section 5.1). */
+static double correct_alpha(const shape_march_options *o, double alpha)
+{
+    return alpha < o->alpha_peel ? 0 : o->alpha_power == 1 ? alpha : pow(alpha, o->alpha_power);
 }
 
 shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 origin, shape_dvec3 direction,
-                                  shape_random *random, shape_march_scratch *scratch, double rgb[3],
+                                  double start, shape_march_scratch *scratch, double rgb[3],
                                   shape_error *error)
 {
-    march_ray ray = {marcher, origin, direction, scratch, random, SHAPE_OK, error, 0, {0, 0, 0}};
+    march_ray ray = {marcher,  origin, direction, scratch, 1 - start,
+                     SHAPE_OK, error,  {0, 0, 0}, 0,       {0, 0, 0}};
     size_t count;
-    shape_status status = prepare_scratch(scratch, marcher->volume->cloud_count, error);
-    if (!status)
-        status = find_intervals(&ray, &count);
+    shape_opaque_hit hit;
+    shape_status status = march_path_find(marcher, &scratch->view, origin, direction, &count, error);
     if (status)
         return status;
-    for (size_t i = 0; i < count;) {
-        float from = scratch->edges[i], to = scratch->edges[i + 1];
-        for (i += 2; i < count && scratch->edges[i] <= to; i += 2)
-            to = fmaxf(to, scratch->edges[i + 1]);
-        march_interval(&ray, from, to);
+    bool met = shape_opaque_find(marcher->options.opaque, origin, direction, INFINITY, &hit);
+    /* A few roundings before the surface (Páleník's bias b), or a sample at the end could lie behind it, in its shadow. */
+    float end = met ? (float)(hit.t * (1 - 2.5e-7)) : INFINITY;
+    for (size_t i = 0; i < count && scratch->view.edges[i] < end; i += 2)
+        march_interval(&ray, scratch->view.edges[i], scratch->view.edges[i + 1], end);
+    double behind[3] = {0, 0, 0}, left = exp(-ray.depth);
+    double alpha = correct_alpha(&marcher->options, 1 - left), gain = 1;
+    if (alpha != 1 - left) {
+        gain = left < 1 ? alpha / -expm1(-ray.depth) : 0;
+        left = 1 - alpha;
     }
-    float sky[3];
-    shape_sky_radiance(&marcher->sky,
-                       shape_vec3_make((float)direction.x, (float)direction.y, (float)direction.z), sky);
+    if (left > 0)
+        march_background(&ray, met ? &hit : NULL, behind);
     for (int c = 0; c < 3; c++)
-        rgb[c] = ray.rgb[c] + exp(-ray.depth) * (double)sky[c];
+        rgb[c] = gain * ray.rgb[c] + left * behind[c];
     return ray.status;
+}
+
+/* --- a picture --- */
+
+/* How much later the steps of a pixel's ray number i begin: further rays by the golden ratio. */
+static double jitter(const shape_marcher *m, int width, int x, int y, int i)
+{
+    uint64_t index = (uint64_t)y * (uint64_t)width + (uint64_t)x;
+    shape_random random = shape_random_seed(shape_hash(m->options.seed) ^ index, 0);
+    double start = 0;
+    if (m->options.jitter == SHAPE_JITTER_NONE)
+        return 0;
+    if (m->options.jitter == SHAPE_JITTER_BLUE)
+        start = (m->blue[y % BLUENOISE_SIZE * BLUENOISE_SIZE + x % BLUENOISE_SIZE] + 0.5) / BLUENOISE_COUNT;
+    else
+        start = shape_random_unit(&random);
+    start += 0.6180339887498949 * i;
+    return start - floor(start);
 }
 
 /* The mean of a pixel's rays: through its middle where there is one, else scattered by the R2 sequence (Roberts 2018). */
 static shape_status render_pixel(const shape_marcher *m, const shape_view *view, const shape_camera *camera,
                                  int x, int y, shape_march_scratch *scratch, float out[3])
 {
-    uint64_t index = (uint64_t)y * (uint64_t)view->width + (uint64_t)x;
     double sum[3] = {0, 0, 0}, rgb[3];
     int n = m->options.samples;
     for (int i = 0; i < n; i++) {
-        shape_random random = shape_random_seed(shape_hash(m->options.seed) ^ index, (uint64_t)i);
         double u = 0.5 + 0.7548776662466927 * i, v = 0.5 + 0.5698402909980532 * i;
         shape_dvec3 d = shape_camera_direction(camera, view, x + u - floor(u), y + v - floor(v));
-        shape_status status = shape_march_radiance(m, camera->origin, d, m->options.jitter ? &random : NULL,
-                                                   scratch, rgb, NULL);
+        shape_status status =
+            shape_march_radiance(m, camera->origin, d, jitter(m, view->width, x, y, i), scratch, rgb, NULL);
         if (status)
             return status;
         for (int c = 0; c < 3; c++)
@@ -258,14 +383,23 @@ static shape_status render_pixel(const shape_marcher *m, const shape_view *view,
     return SHAPE_OK;
 }
 
-static shape_status render_row(const shape_marcher *m, const shape_view *view, const shape_camera *camera,
-                               int y, float *out)
+/* A picture being marched. */
+typedef struct march_picture {
+    const shape_marcher *marcher;
+    const shape_view *view;
+    shape_camera camera;
+    float *radiance;
+} march_picture;
+
+static shape_status render_row(void *context, int y)
 {
+    const march_picture *picture = context;
+    float *out = picture->radiance + (size_t)y * (size_t)picture->view->width * 3;
     shape_march_scratch scratch;
     shape_status status = SHAPE_OK;
     memset(&scratch, 0, sizeof scratch);
-    for (int x = 0; x < view->width && !status; x++)
-        status = render_pixel(m, view, camera, x, y, &scratch, out + 3 * x);
+    for (int x = 0; x < picture->view->width && !status; x++)
+        status = render_pixel(picture->marcher, picture->view, &picture->camera, x, y, &scratch, out + 3 * x);
     shape_march_scratch_free(&scratch);
     return status;
 }
@@ -276,35 +410,11 @@ shape_status shape_march_render(const shape_marcher *m, const shape_view *view, 
     shape_status status = shape_view_check(view, error);
     if (status)
         return status;
-    shape_camera camera = shape_view_camera(view);
-    int stop = 0, failed = 0, done = 0;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int y = 0; y < view->height; y++) {
-        int stopped, rows;
-#pragma omp atomic read
-        stopped = stop;
-        if (stopped)
-            continue;
-        if (render_row(m, view, &camera, y, radiance + (size_t)y * (size_t)view->width * 3)) {
-#pragma omp atomic write
-            failed = 1;
-        }
-#pragma omp atomic capture
-        rows = ++done;
-        bool speaks = true;
-#ifdef _OPENMP
-        speaks = omp_get_thread_num() == 0;
-#endif
-        if (speaks && m->options.progress &&
-            !m->options.progress(m->options.progress_context, (double)rows / view->height)) {
-#pragma omp atomic write
-            stop = 1;
-        }
-    }
-    /* The thread that speaks may have had no row at all. */
-    if (!stop && m->options.progress && !m->options.progress(m->options.progress_context, 1))
-        stop = 1;
+    march_picture picture = {m, view, shape_view_camera(view), radiance};
+    rows_progress progress = {m->options.progress, m->options.progress_context, 0, 1};
+    bool stopped;
+    status = rows_share(view->height, render_row, &picture, &progress, &stopped);
     if (cancelled)
-        *cancelled = stop;
-    return failed ? shape_error_memory(error) : SHAPE_OK;
+        *cancelled = stopped;
+    return status ? shape_error_memory(error) : SHAPE_OK;
 }

@@ -2,24 +2,27 @@
 #ifndef SHAPE_LIGHT_MARCH_H
 #define SHAPE_LIGHT_MARCH_H
 
+#include "light/bluenoise.h"
 #include "shape/lightgrid.h"
 #include "shape/march.h"
 
 /* A cloud with what its light needs. */
 typedef struct march_cloud {
     const shape_volume_cloud *cloud;
-    shape_lightgrid grid; /* SHAPE_MARCH_GRID; else without cells */
-    float *seen;          /* its cells as the eye sees them, RGB and 0 */
+    shape_lightgrid grid; /* of all light, of depths, or that of 2018; else without cells */
+    float *seen;          /* SHAPE_MARCH_GRID: its cells as the eye sees them, RGB and 0 */
 } march_cloud;
 
 struct shape_marcher {
     const shape_volume *volume;
     shape_light light;
     shape_sky sky;
-    float ambient[3]; /* mean radiance of the sky */
+    float upper[3], lower[3]; /* mean radiance of the sky's halves */
     shape_march_options options;
     double step, light_step;
+    shape_dvec3 low, high; /* the world box around all clouds */
     march_cloud *clouds;
+    uint16_t *blue; /* SHAPE_JITTER_BLUE */
 };
 
 /* The extinction at t along the ray [1/m], and the radiance that it adds to the ray a metre. */
@@ -32,15 +35,46 @@ typedef struct march_ray {
     const shape_marcher *marcher;
     shape_dvec3 origin, direction;
     shape_march_scratch *scratch;
-    shape_random *random; /* NULL: no jitter */
+    double first; /* the first step's length, as a share of a whole one, above 0 to 1 */
     shape_status status;
     shape_error *error;
+    shape_dvec3 shift;    /* from the ray to where it is looked at, where starts are locked to a grid */
     double depth, rgb[3]; /* gathered so far */
 } march_ray;
 
+/* --- march_path.c: the joined intervals of all clouds on a ray --- */
+
+/* Fills path->edges with *count edges, pairs sorted by their start and apart from each other. */
+shape_status march_path_find(const shape_marcher *marcher, shape_march_path *path, shape_dvec3 origin,
+                             shape_dvec3 direction, size_t *count, shape_error *error);
+/* Extinction of all clouds at t on that ray. */
+double march_path_extinction(const shape_marcher *marcher, const shape_march_path *path, shape_dvec3 origin,
+                             shape_dvec3 direction, float t);
+void march_path_free(shape_march_path *path);
+
+/* --- march_light.c --- */
+
 march_sample march_look(march_ray *ray, float t);
 
-/* Adds the panel from a to b by the rule; march_rules.c. */
+/* --- march_sun.c --- */
+
+bool march_needs_depth(shape_march_light light);
+/* The optical depth from a world point to the sun, infinite behind something opaque. cloud and p: the cloud that asks,
+ * and the point in its frame; NULL: none, and it is marched. */
+double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *cloud, shape_vec3 p);
+/* The share of the sun's light that comes there by Harris' recurrence. */
+double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo);
+/* Value `value` of a grid at a point of its cloud's frame, between cell centres; constant beyond the outermost. */
+double march_grid_value(const shape_lightgrid *grid, const float *cells, int values, int value, shape_vec3 p);
+
+/* --- march_surface.c --- */
+
+/* What a ray sees behind all clouds: the surface that it hit, or the sky. */
+void march_background(march_ray *ray, const shape_opaque_hit *hit, double rgb[3]);
+
+/* --- march_rules.c --- */
+
+/* Adds the panel from a to b by the rule. */
 void march_panel(march_ray *ray, shape_rule rule, float a, float b);
 /* How many steps make one panel of the rule. */
 int march_panel_steps(shape_rule rule);

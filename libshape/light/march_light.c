@@ -1,24 +1,12 @@
-/* What a marched ray meets at a point: extinction, and light by one of the models of shape/march.h. */
-#include "light/march.h"
-
+/* What a marched ray meets at a point: extinction, emission, and light by one of the models of shape/march.h. */
 #include <math.h>
 
+#include "light/march.h"
 #include "shape/phase.h"
 
-enum { OCTAVES = 8 };
+static const double pi = 3.14159265358979323846;
 
-/* The optical depth from the ray's point at t to the sun. */
-static double sun_depth(march_ray *ray, float t)
-{
-    const shape_marcher *m = ray->marcher;
-    shape_dvec3 point = shape_dvec3_add(ray->origin, shape_dvec3_scale(ray->direction, (double)t));
-    double depth = 0;
-    if (!ray->status)
-        ray->status =
-            shape_volume_optical_depth(m->volume, point, m->light.sun, 0, INFINITY, (float)m->light_step,
-                                       &ray->scratch->shadow, &depth, ray->error);
-    return depth;
-}
+enum { OCTAVES = 8 };
 
 /* Copy k has extinction, strength and mean cosine halved k times; the strengths sum to 1. */
 static double octaves(const shape_medium *medium, float cos_sun, double depth)
@@ -37,78 +25,115 @@ static double octaves(const shape_medium *medium, float cos_sun, double depth)
     return sum;
 }
 
-/* The radiance that a cloud's scattering adds at a point, for extinction 1. */
-static void sun_source(const march_ray *ray, const shape_medium *medium, double depth, double rgb[3])
+/* How much of the sun's light is left at that depth, by the law. */
+static double attenuation(const shape_march_options *options, double cos_sun, double depth)
 {
-    const shape_marcher *m = ray->marcher;
-    float cos_sun = (float)shape_dvec3_dot(ray->direction, m->light.sun);
-    bool many = m->options.light == SHAPE_MARCH_OCTAVES;
-    double value =
-        many ? octaves(medium, cos_sun, depth) : (double)shape_phase(medium, cos_sun) * exp(-depth);
-    if (m->options.light == SHAPE_MARCH_POWDER)
-        value *= -expm1(-2 * depth);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (double)medium->albedo * (value * (double)m->light.sun_irradiance[c] +
-                                           (many ? (double)m->ambient[c] * exp(-depth / 8) : 0));
+    switch (options->light) {
+    case SHAPE_MARCH_POWDER:
+        return exp(-depth) * -expm1(-options->powder * depth);
+    case SHAPE_MARCH_POWDER_ANGLE:
+        /* The angle lies between the way one looks and the way the light goes: 1 with the sun behind the eye. */
+        return exp(-depth) * (1 - (1 - cos_sun) / 2 * exp(-options->powder * depth));
+    case SHAPE_MARCH_BEER_MAX:
+        return fmax(exp(-depth), 0.7 * exp(-depth / 4));
+    default:
+        return exp(-depth);
+    }
 }
 
-/* Trilinear between cell centres, constant beyond the outermost. */
-static void grid_source(const march_cloud *cloud, shape_vec3 p, double rgb[3])
+/* A point of a cloud that is being lit. */
+typedef struct lit_point {
+    const march_cloud *cloud;
+    shape_dvec3 world;
+    shape_vec3 p; /* cloud's frame */
+    double extinction;
+} lit_point;
+
+/* With `silver`, thin parts scatter straight on and thick ones all round. */
+static double phase(const shape_marcher *m, const lit_point *at, double cos_sun)
 {
-    const shape_lightgrid *grid = &cloud->grid;
-    float at[3] = {p.x - grid->box.min.x, p.y - grid->box.min.y, p.z - grid->box.min.z};
-    float side[3] = {grid->box.max.x - grid->box.min.x, grid->box.max.y - grid->box.min.y,
-                     grid->box.max.z - grid->box.min.z};
-    int low[3], high[3];
-    double share[3];
-    for (int a = 0; a < 3; a++) {
-        float x = side[a] > 0 ? at[a] / side[a] * (float)grid->size[a] - 0.5f : 0;
-        x = fminf(fmaxf(x, 0), (float)grid->size[a] - 1);
-        low[a] = (int)x;
-        high[a] = low[a] + 1 < grid->size[a] ? low[a] + 1 : low[a];
-        share[a] = (double)(x - (float)low[a]);
+    const double highest = 0.99; /* 1 is a flash in one direction */
+    if (!m->options.silver)
+        return (double)shape_phase(&at->cloud->cloud->medium, (float)cos_sun);
+    return (double)shape_phase_hg((float)fmin(exp(-at->extinction * m->step), highest), (float)cos_sun);
+}
+
+/* Radiance that the cloud's scattering adds at a point, for extinction 1 and sun light of irradiance 1. */
+static double sun_source(march_ray *ray, const lit_point *at, double cos_sun, double *depth)
+{
+    const shape_marcher *m = ray->marcher;
+    const shape_medium *medium = &at->cloud->cloud->medium;
+    double albedo = (double)medium->albedo;
+    if (m->options.light == SHAPE_MARCH_HARRIS)
+        return albedo * phase(m, at, cos_sun) * march_sun_harris(ray, at->world, albedo);
+    if (m->options.light == SHAPE_MARCH_TWO_PASS) {
+        const shape_lightgrid *grid = &at->cloud->grid;
+        double received = march_grid_value(grid, grid->cells, SHAPE_LIGHTGRID_VALUES, 0, at->p);
+        if (shape_opaque_blocks(m->options.opaque, at->world, m->light.sun, INFINITY))
+            received = 0;
+        return albedo * received * (1 + phase(m, at, cos_sun)) / pi;
     }
-    rgb[0] = rgb[1] = rgb[2] = 0;
-    for (int k = 0; k < 8; k++) {
-        int x = k & 1 ? high[0] : low[0], y = k & 2 ? high[1] : low[1], z = k & 4 ? high[2] : low[2];
-        double weight = (k & 1 ? share[0] : 1 - share[0]) * (k & 2 ? share[1] : 1 - share[1]) *
-                        (k & 4 ? share[2] : 1 - share[2]);
-        const float *cell =
-            cloud->seen +
-            4 * ((size_t)x + (size_t)grid->size[0] * ((size_t)y + (size_t)grid->size[1] * (size_t)z));
+    *depth = m->options.shade * march_sun_depth(ray, at->world, at->cloud, at->p);
+    if (m->options.light == SHAPE_MARCH_OCTAVES)
+        return albedo * octaves(medium, (float)cos_sun, *depth);
+    return albedo * phase(m, at, cos_sun) * attenuation(&m->options, cos_sun, *depth);
+}
+
+static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
+{
+    const shape_marcher *m = ray->marcher;
+    const march_cloud *cloud = at->cloud;
+    if (m->options.light == SHAPE_MARCH_GRID) {
         for (int c = 0; c < 3; c++)
-            rgb[c] += weight * (double)cell[c];
+            rgb[c] = march_grid_value(&cloud->grid, cloud->seen, 4, c, at->p);
+        return;
     }
+    double depth = 0;
+    double value = sun_source(ray, at, shape_dvec3_dot(ray->direction, m->light.sun), &depth);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = value * (double)m->light.sun_irradiance[c];
+    if (m->options.light == SHAPE_MARCH_OCTAVES)
+        for (int c = 0; c < 3; c++)
+            rgb[c] += (double)cloud->cloud->medium.albedo * exp(-fmin(depth, 1e3) / 8) *
+                      (double)(m->upper[c] + m->lower[c]) / 2;
+}
+
+/* The square of u at a point of cloud i; above the support's where there is nothing. */
+static float find_u2(const march_ray *ray, size_t i, shape_vec3 p, float t)
+{
+    const shape_volume_cloud *cloud = ray->marcher->clouds[i].cloud;
+    const shape_candidates *found = &ray->scratch->view.views[i];
+    if (ray->marcher->options.lock > 0) /* the point is off the ray */
+        return cloud->field.model == SHAPE_MODEL_GRID ? 0 : shape_cloud_u2(cloud, p);
+    return found->count ? shape_candidates_u2(found, 0, found->count, cloud->support * cloud->support, t)
+                        : INFINITY;
 }
 
 march_sample march_look(march_ray *ray, float t)
 {
     const shape_marcher *m = ray->marcher;
     march_sample sample = {0, {0, 0, 0}};
-    double depth = -1;
+    shape_dvec3 origin = shape_dvec3_add(ray->origin, ray->shift);
     for (size_t i = 0; i < m->volume->cloud_count; i++) {
         const shape_volume_cloud *cloud = m->clouds[i].cloud;
-        const shape_candidates *found = &ray->scratch->views[i];
-        if (!found->count)
+        if (!ray->scratch->view.views[i].count)
             continue;
-        float u2 = shape_candidates_u2(found, 0, found->count, cloud->support * cloud->support, t);
+        shape_ray local = shape_volume_ray(cloud, origin, ray->direction);
+        shape_vec3 p = shape_vec3_add(local.origin, shape_vec3_scale(local.direction, t));
+        float u2 = find_u2(ray, i, p, t);
         if (!(u2 <= cloud->support * cloud->support))
             continue;
-        shape_ray local = shape_volume_ray(cloud, ray->origin, ray->direction);
-        shape_vec3 p = shape_vec3_add(local.origin, shape_vec3_scale(local.direction, t));
-        double extinction = (double)cloud->medium.extinction * (double)shape_cloud_density_at(cloud, p, u2),
-               rgb[3];
-        if (!(extinction > 0))
+        double density = (double)shape_cloud_density_at(cloud, p, u2), rgb[3];
+        lit_point at = {&m->clouds[i], shape_dvec3_add(origin, shape_dvec3_scale(ray->direction, (double)t)),
+                        p, density * (double)cloud->medium.extinction};
+        if (!(density > 0))
             continue;
-        if (m->options.light == SHAPE_MARCH_GRID) {
-            grid_source(&m->clouds[i], p, rgb);
-        } else {
-            depth = depth < 0 ? sun_depth(ray, t) : depth;
-            sun_source(ray, &cloud->medium, depth, rgb);
-        }
-        sample.extinction += extinction;
+        if (at.extinction > 0)
+            light_point(ray, &at, rgb);
+        sample.extinction += at.extinction;
         for (int c = 0; c < 3; c++)
-            sample.added[c] += extinction * rgb[c];
+            sample.added[c] +=
+                (at.extinction > 0 ? at.extinction * rgb[c] : 0) + density * (double)m->options.emission[c];
     }
     return sample;
 }

@@ -1,20 +1,16 @@
-/* The reference renderer: paths through the volume with next-event estimation of sun and lamp (Kajiya 1986 for volumes;
- * see shape/pathtrace.h). Albedo, phase function and extinction are grey, so a path carries one number. */
+/* The reference renderer: pictures as means of light paths (path.c; see shape/pathtrace.h). */
 #include "shape/pathtrace.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
-#include "light/track.h"
+#include "light/path.h"
+#include "light/rows.h"
 #include "shape/phase.h"
 
-static const double pi = 3.14159265358979323846;
-
-enum { PASS_SAMPLES = 16 };
+/* Samples a pixel between two looks at the noise, or at most in one go where nobody looks. */
+enum { PASS_SAMPLES = 16, LONG_PASS = 64 };
 
 shape_status shape_tracer_create(const shape_volume *volume, shape_tracer **tracer, shape_error *error)
 {
@@ -72,146 +68,6 @@ shape_status shape_pathtrace_check(const shape_pathtrace_options *options, shape
     return SHAPE_OK;
 }
 
-/* All that a path needs to know, made ready once. */
-typedef struct scene {
-    const majorant_grid *grid;
-    shape_sky sky;
-    double sun[3], sun_cos, irradiance[3]; /* sun_cos: the cosine at the disc's edge */
-    bool has_sun, has_lamp;
-    double lamp[3], intensity[3];
-    int max_bounces;
-} scene;
-
-static scene make_scene(const shape_tracer *tracer, const shape_light *light,
-                        const shape_pathtrace_options *options)
-{
-    scene s;
-    memset(&s, 0, sizeof s);
-    s.grid = &tracer->grid;
-    s.sky = shape_sky_make(light);
-    shape_dvec3 sun = shape_dvec3_normalize(light->sun);
-    s.sun[0] = sun.x, s.sun[1] = sun.y, s.sun[2] = sun.z;
-    s.sun_cos = cos(options->sun_angle * (pi / 360));
-    shape_dvec3 lamp = shape_dvec3_sub(options->lamp.position, tracer->grid.origin);
-    s.lamp[0] = lamp.x, s.lamp[1] = lamp.y, s.lamp[2] = lamp.z;
-    for (int c = 0; c < 3; c++) {
-        s.irradiance[c] = (double)light->sun_irradiance[c];
-        s.intensity[c] = (double)options->lamp.intensity[c];
-        s.has_sun = s.has_sun || s.irradiance[c] > 0;
-        s.has_lamp = s.has_lamp || s.intensity[c] > 0;
-    }
-    s.max_bounces = options->max_bounces;
-    return s;
-}
-
-/* The direction at cosine c from d, turned by chance. The basis is that of Duff et al. 2017. */
-static void turn(double d[3], double c, shape_random *random)
-{
-    double sign = copysign(1, d[2]), a = -1 / (sign + d[2]), b = d[0] * d[1] * a;
-    double x[3] = {1 + sign * d[0] * d[0] * a, sign * b, -sign * d[0]};
-    double y[3] = {b, sign + d[1] * d[1] * a, -d[1]};
-    double s = sqrt(track_max(1 - c * c, 0));
-    float angle = (float)(2 * pi * track_unit(random));
-    double u = s * (double)cosf(angle), v = s * (double)sinf(angle), sum = 0;
-    for (int i = 0; i < 3; i++) {
-        d[i] = u * x[i] + v * y[i] + c * d[i];
-        sum += d[i] * d[i];
-    }
-    for (int i = 0; i < 3; i++)
-        d[i] /= sqrt(sum);
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Whether to look for light of this phase value at all: small values, most of the sphere with forward scattering, get a
- * shadow ray by chance in proportion, and are then as much heavier. Their noise stays far below that of the lobe's. */
-static bool worth_a_look(double *value, shape_random *random)
-{
-    const double enough =
-        0.3; /* less than half the time of 0, for the same variance, on a cumulus with g 0.85 */
-    if (*value >= enough)
-        return true;
-    if (track_unit(random) * enough >= *value)
-        return false;
-    *value = enough;
-    return true;
-}
-
-static void add_sun(const scene *s, const double p[3], const double d[3], const shape_medium *medium,
-                    double weight, shape_random *random, double rgb[3])
-{
-    double way[3] = {s->sun[0], s->sun[1], s->sun[2]};
-    if (s->sun_cos < 1)
-        turn(way, 1 - track_unit(random) * (1 - s->sun_cos), random);
-    weight *= (double)shape_phase(medium, (float)dot(d, way));
-    if (!worth_a_look(&weight, random) || track_blocked(s->grid, p, way, INFINITY, random))
-        return;
-    for (int c = 0; c < 3; c++)
-        rgb[c] += weight * s->irradiance[c];
-}
-
-static void add_lamp(const scene *s, const double p[3], const double d[3], const shape_medium *medium,
-                     double weight, shape_random *random, double rgb[3])
-{
-    double way[3] = {s->lamp[0] - p[0], s->lamp[1] - p[1], s->lamp[2] - p[2]};
-    double square = dot(way, way), distance = sqrt(square);
-    if (!(distance > 0))
-        return;
-    for (int i = 0; i < 3; i++)
-        way[i] /= distance;
-    weight *= (double)shape_phase(medium, (float)dot(d, way)) / square;
-    if (track_blocked(s->grid, p, way, distance, random))
-        return;
-    for (int c = 0; c < 3; c++)
-        rgb[c] += weight * s->intensity[c];
-}
-
-/* Goes on with a light path by chance only; false ends it. */
-static bool survives(double *weight, shape_random *random)
-{
-    const double least = 0.1;
-    if (*weight >= least)
-        return true;
-    if (track_unit(random) * least >= *weight)
-        return false;
-    *weight = least;
-    return true;
-}
-
-/* Follows a path and adds what it gathers to rgb. first is the uniform number that the first free path is made of. */
-static void gather(const scene *s, double p[3], double d[3], double first, shape_random *random,
-                   double rgb[3])
-{
-    double weight = 1, depth = -log(first);
-    uint32_t cloud = 0;
-    for (int bounce = 0;; bounce++) {
-        if (!track_collide(s->grid, p, d, depth, random, &cloud)) {
-            float sky[3];
-            shape_sky_radiance(&s->sky, shape_vec3_make((float)d[0], (float)d[1], (float)d[2]), sky);
-            for (int c = 0; c < 3; c++)
-                rgb[c] += weight * (double)sky[c];
-            return;
-        }
-        if (bounce == s->max_bounces)
-            return;
-        const shape_medium *medium = &s->grid->clouds[cloud].cloud->medium;
-        weight *= (double)medium->albedo;
-        if (!(weight > 0))
-            return;
-        if (s->has_sun)
-            add_sun(s, p, d, medium, weight, random, rgb);
-        if (s->has_lamp)
-            add_lamp(s, p, d, medium, weight, random, rgb);
-        if (!survives(&weight, random))
-            return;
-        turn(d, (double)shape_phase_sample(medium, (float)shape_random_u32(random) * 0x1p-32f), random);
-        depth = (double)-logf((float)track_unit(random));
-    }
-}
-
 static void to_grid(const majorant_grid *grid, shape_dvec3 origin, shape_dvec3 direction, double p[3],
                     double d[3])
 {
@@ -236,7 +92,7 @@ shape_walk shape_tracer_walk(const shape_tracer *tracer, shape_dvec3 origin, sha
     double p[3], d[3];
     uint32_t cloud = 0;
     to_grid(grid, origin, direction, p, d);
-    while (track_collide(grid, p, d, -log(track_unit(random)), random, &cloud)) {
+    while (track_collide(grid, p, d, INFINITY, -log(track_unit(random)), random, &cloud)) {
         const shape_medium *medium = &grid->clouds[cloud].cloud->medium;
         walk.weight *= (double)medium->albedo;
         if (walk.bounces == max_bounces || !(walk.weight > 0)) {
@@ -244,7 +100,7 @@ shape_walk shape_tracer_walk(const shape_tracer *tracer, shape_dvec3 origin, sha
             break;
         }
         walk.bounces++;
-        turn(d, (double)shape_phase_sample(medium, (float)shape_random_u32(random) * 0x1p-32f), random);
+        path_turn(d, (double)shape_phase_sample(medium, (float)shape_random_u32(random) * 0x1p-32f), random);
     }
     walk.direction = shape_dvec3_make(d[0], d[1], d[2]);
     return walk;
@@ -254,11 +110,11 @@ void shape_pathtrace_radiance(const shape_tracer *tracer, const shape_light *lig
                               const shape_pathtrace_options *options, shape_dvec3 origin,
                               shape_dvec3 direction, shape_random *random, double rgb[3])
 {
-    scene s = make_scene(tracer, light, options);
+    path_scene s = path_scene_make(&tracer->grid, light, options);
     double p[3], d[3];
     to_grid(s.grid, origin, direction, p, d);
     rgb[0] = rgb[1] = rgb[2] = 0;
-    gather(&s, p, d, track_unit(random), random, rgb);
+    path_gather(&s, p, d, track_unit(random), random, rgb);
 }
 
 /* --- pictures --- */
@@ -269,7 +125,7 @@ typedef struct pixel_sums {
 } pixel_sums;
 
 typedef struct canvas {
-    const scene *scene;
+    const path_scene *scene;
     const shape_view *view;
     shape_camera camera;
     uint64_t seed;
@@ -295,7 +151,7 @@ static void trace_sample(const canvas *picture, int x, int y, int i, const doubl
     shape_dvec3 direction = shape_camera_direction(&picture->camera, picture->view, x + r[0], y + r[1]);
     to_grid(picture->scene->grid, picture->camera.origin, direction, p, d);
     rgb[0] = rgb[1] = rgb[2] = 0;
-    gather(picture->scene, p, d, track_max(r[2], 0x1p-40), &random, rgb);
+    path_gather(picture->scene, p, d, track_max(r[2], 0x1p-40), &random, rgb);
 }
 
 static void trace_row(const canvas *picture, int y, int samples)
@@ -318,35 +174,17 @@ static void trace_row(const canvas *picture, int y, int samples)
     picture->row_samples[y] = before + samples;
 }
 
-/* One pass over all rows; false where the caller's progress ended it. from and to are the pass's share of the work. */
-static bool trace_pass(const canvas *picture, int samples, const shape_pathtrace_options *options,
-                       double from, double to)
+/* One pass over all rows. */
+typedef struct trace_work {
+    const canvas *picture;
+    int samples;
+} trace_work;
+
+static shape_status work_on_row(void *context, int y)
 {
-    int height = picture->view->height, done = 0, stop = 0;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int y = 0; y < height; y++) {
-        int stopped, rows;
-#pragma omp atomic read
-        stopped = stop;
-        if (stopped)
-            continue;
-        trace_row(picture, y, samples);
-#pragma omp atomic capture
-        rows = ++done;
-        bool speaks = true;
-#ifdef _OPENMP
-        speaks = omp_get_thread_num() == 0;
-#endif
-        if (speaks && options->progress &&
-            !options->progress(options->progress_context, from + (to - from) * rows / height)) {
-#pragma omp atomic write
-            stop = 1;
-        }
-    }
-    /* The thread that speaks may have had no row at all. */
-    if (!stop && options->progress && !options->progress(options->progress_context, to))
-        stop = 1;
-    return !stop;
+    const trace_work *work = context;
+    trace_row(work->picture, y, work->samples);
+    return SHAPE_OK;
 }
 
 static double pixel_variance(const pixel_sums *pixel, int channel, int samples)
@@ -392,10 +230,13 @@ static void trace_picture(const canvas *picture, const shape_pathtrace_options *
                           shape_pathtrace_result *result)
 {
     while (result->samples < options->samples && !result->cancelled) {
-        int left = options->samples - result->samples, samples = left < PASS_SAMPLES ? left : PASS_SAMPLES;
-        double from = (double)result->samples / options->samples;
-        double to = (double)(result->samples + samples) / options->samples;
-        result->cancelled = !trace_pass(picture, samples, options, from, to);
+        int left = options->samples - result->samples, most = options->noise > 0 ? PASS_SAMPLES : LONG_PASS;
+        int samples = left < most ? left : most;
+        rows_progress progress = {options->progress, options->progress_context,
+                                  (double)result->samples / options->samples,
+                                  (double)(result->samples + samples) / options->samples};
+        trace_work work = {picture, samples};
+        rows_share(picture->view->height, work_on_row, &work, &progress, &result->cancelled);
         if (result->cancelled)
             break;
         result->samples += samples;
@@ -417,7 +258,7 @@ shape_status shape_pathtrace_render(const shape_tracer *tracer, const shape_view
         status = shape_pathtrace_check(options, error);
     if (status)
         return status;
-    scene s = make_scene(tracer, light, options);
+    path_scene s = path_scene_make(&tracer->grid, light, options);
     canvas picture = {&s, view, shape_view_camera(view), options->seed, NULL, NULL};
     picture.pixels = calloc((size_t)view->width * (size_t)view->height, sizeof *picture.pixels);
     picture.row_samples = calloc((size_t)view->height, sizeof *picture.row_samples);

@@ -121,11 +121,11 @@ static bool collide(const majorant_grid *grid, const double p[3], const double d
     return false;
 }
 
-bool track_collide(const majorant_grid *grid, double p[3], const double d[3], double depth,
+bool track_collide(const majorant_grid *grid, double p[3], const double d[3], double length, double depth,
                    shape_random *random, uint32_t *cloud)
 {
     double t;
-    if (!collide(grid, p, d, INFINITY, depth, random, &t, cloud))
+    if (!collide(grid, p, d, length, depth, random, &t, cloud))
         return false;
     for (int a = 0; a < 3; a++)
         p[a] += d[a] * t;

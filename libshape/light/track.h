@@ -28,8 +28,8 @@ static inline double track_max(double a, double b)
 
 /* Draws where a ray from p (metres from the grid's origin) along the unit vector d collides. depth is the optical depth,
  * drawn by the caller as -log of a uniform number, after which the first tentative collision comes. True: p has moved
- * there and *cloud scatters; false: the ray leaves the grid. */
-bool track_collide(const majorant_grid *grid, double p[3], const double d[3], double depth,
+ * there and *cloud scatters; false: the ray leaves the grid, or comes as far as length [m], and p is where it was. */
+bool track_collide(const majorant_grid *grid, double p[3], const double d[3], double length, double depth,
                    shape_random *random, uint32_t *cloud);
 
 /* Whether something collides with a ray from p along d before length: false with the chance of the transmittance. Cheaper

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "primitive/names.h"
 
 shape_field shape_field_defaults(void)
 {
@@ -77,15 +78,8 @@ void shape_set_destroy(shape_set *set)
     free(set->clouds);
     free(set->lists);
     free(set->extras);
+    free(set->name_slots);
     free(set);
-}
-
-static bool name_taken(const shape_set *set, const char *name)
-{
-    for (size_t i = 0; i < set->cloud_count; i++)
-        if (!strcmp(set->clouds[i].name, name))
-            return true;
-    return false;
 }
 
 /* Copies wanted into name, cut at a whole UTF-8 character, with a number behind it where it is taken. */
@@ -103,14 +97,17 @@ static void choose_name(const shape_set *set, const char *wanted, char name[SHAP
         length = strlen(wanted);
     }
     snprintf(name, SHAPE_NAME_MAX + 1, "%.*s", (int)length, wanted);
-    for (size_t number = set->cloud_count ? set->cloud_count + 1 : 2; name_taken(set, name); number++)
+    for (size_t number = set->cloud_count ? set->cloud_count + 1 : 2; shape_names_taken(set, name); number++)
         snprintf(name, SHAPE_NAME_MAX + 1, "%.*s-%zu", (int)length, wanted, number);
 }
 
+/* Room for one cloud more, and a table of names to choose its own by. */
 static shape_status reserve_cloud(shape_set *set, shape_error *error)
 {
-    return shape_array_reserve((void **)&set->clouds, &set->cloud_capacity, set->cloud_count + 1,
-                               sizeof *set->clouds, error);
+    shape_status status = shape_names_update(set, error);
+    return status ? status
+                  : shape_array_reserve((void **)&set->clouds, &set->cloud_capacity, set->cloud_count + 1,
+                                        sizeof *set->clouds, error);
 }
 
 shape_status shape_set_add_cloud(shape_set *set, const char *name, size_t *index, shape_error *error)

@@ -254,3 +254,14 @@ shape_status shape_set_transform(shape_set *set, const bool *selected, const sha
             status = transform_cloud(&set->clouds[i], transform, equal, error);
     return status;
 }
+
+shape_status shape_cloud_transform(shape_cloud *cloud, const shape_transform *transform, shape_error *error)
+{
+    const double *scale = transform->scale;
+    shape_status status = shape_transform_check(transform, error);
+    if (!status && !(scale[0] == scale[1] && scale[1] == scale[2]))
+        status = shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                                 "scale %g,%g,%g: one cloud's frame takes equal factors only", scale[0],
+                                 scale[1], scale[2]);
+    return status ? status : transform_cloud(cloud, transform, true, error);
+}

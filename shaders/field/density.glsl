@@ -72,17 +72,23 @@ float metaball_density(vec3 p, float sum)
     return cloud_edge * n <= sum ? n : 0.0;
 }
 
+// FIELD_PLAIN: no cloud of the scene is a layer, a metaball or has details. A shader that can do those pays for them at
+// every step, whether a cloud has them or not.
+#ifndef FIELD_PLAIN
 #include "field/detail.glsl"
+#endif
 
 float density_at(vec3 p, float u2)
 {
     if (!(u2 <= cloud_support2))
         return 0.0;
+#ifndef FIELD_PLAIN
     if (cloud_detailed)
         return detail_density(p);
+    if (cloud_model == MODEL_METABALL)
+        return metaball_density(p, metaball_sum(p));
+#endif
     if (cloud_model == MODEL_UNIFORM)
         return 1.0;
-    if (cloud_model == MODEL_SPHEROID)
-        return spheroid_density(p, sqrt(u2));
-    return metaball_density(p, metaball_sum(p));
+    return spheroid_density(p, sqrt(u2));
 }

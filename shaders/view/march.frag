@@ -3,14 +3,15 @@
 #include "field/noise.glsl"
 #include "field/density.glsl"
 #include "field/interval.glsl"
-#include "light/phase.glsl"
 #include "light/sky.glsl"
-#include "light/lightgrid.glsl"
 #include "view/camera.glsl"
 
 uniform float step_scale;     // steps, in cells of the noise's first octave
 uniform float step_growth;    // steps grow with distance: metres a metre, about a pixel
+uniform float step_deep;      // how much longer steps get where little shines through: 1 + step_deep at the end
 uniform float transmittance_end;
+
+uniform highp sampler3D light_seen; // source function towards the eye, see viewer/gl/grid_light.c
 
 layout(location = 0) out vec4 radiance_out; // radiance, coverage
 layout(location = 1) out vec4 work_out;     // steps, fetches, where to go on or -1
@@ -27,7 +28,17 @@ float reached; // all before it is done
 
 float step_length(float t)
 {
-    return max(step_scale * cloud_step, step_growth * t);
+    return max(step_scale * cloud_step, step_growth * t) * (1.0 + step_deep * (1.0 - transmittance));
+}
+
+// Source function of the loaded cloud at p, towards the eye: radiance per unit of extinction.
+vec3 light_at(vec3 p)
+{
+    vec4 slot = cloud_texel(cloud_index, 8), size = cloud_texel(cloud_index, 9);
+    vec4 low = cloud_texel(cloud_index, 10), high = cloud_texel(cloud_index, 11);
+    vec3 cell = clamp((p - low.xyz) / (high.xyz - low.xyz) * size.xyz, vec3(0.5), size.xyz - 0.5);
+    fetches += 5.0;
+    return texture(light_seen, (slot.xyz + cell) / vec3(textureSize(light_seen, 0))).rgb;
 }
 
 void add_segment(float extinction, vec3 source, float width)
@@ -56,7 +67,7 @@ void march_one(int first, int end, float t1)
         fetches += float(cloud_octaves);
         work += cloud_octaves + 2;
         if (density > 0.0)
-            add_segment(density * cloud_extinction, scattered_light(p, ray), width);
+            add_segment(density * cloud_extinction, light_at(p), width);
         reached = width < t1 - reached ? reached + width : t1;
     }
 }
@@ -82,7 +93,7 @@ void mixed_at(int first, int end, float s, bool crowded, out float extinction, o
         work += cloud_octaves + 2;
         if (density > 0.0) {
             extinction += density * cloud_extinction;
-            source += density * cloud_extinction * scattered_light(p, ray);
+            source += density * cloud_extinction * light_at(p);
         }
         last = c;
     }

@@ -8,9 +8,9 @@
 
 /* --- program.c --- */
 
-/* Compiles two shaders of shaders/; `#include "x"` lines are replaced by file x. */
-shape_status gl_program_create(const char *folder, const char *vertex, const char *fragment, GLuint *program,
-                               shape_error *error);
+/* Compiles two shaders of shaders/; `#include "x"` lines are replaced by file x. defines: lines before them, or "". */
+shape_status gl_program_create(const char *folder, const char *vertex, const char *fragment,
+                               const char *defines, GLuint *program, shape_error *error);
 
 /* --- target.c --- */
 
@@ -46,7 +46,7 @@ typedef struct gl_scene {
     int cloud_count, shown_count;
 } gl_scene;
 
-enum { GL_RECORD_TEXELS = 36 };
+enum { GL_RECORD_TEXELS = 36 }; /* SHAPE_RECORD_TEXELS */
 
 shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_error *error);
 /* Rewrites the records for an eye (each cloud's frame is taken relative to it, in double precision) and uploads them;
@@ -164,6 +164,7 @@ struct shape_gl_renderer {
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
+    bool view_plain; /* the view program is for scenes without details, layers and metaballs */
     GLuint view_program, tonemap, density, empty_array;
     GLuint copy, heat, query;
     gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */

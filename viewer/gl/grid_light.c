@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "gl_private.h"
+#include "shape/record.h"
 
 static size_t cell_count(const int size[3])
 {
@@ -92,13 +93,9 @@ void gl_light_upload(gl_light *light)
 void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *volume)
 {
     for (int i = 0; i < light->count; i++) {
-        const shape_lightgrid *grid = &light->grids[i];
-        const int *place = light->boxes[i].place;
-        gl_scene_put(scene, i, 8, place[0], place[1], place[2], 0);
-        gl_scene_put(scene, i, 9, grid->size[0], grid->size[1], grid->size[2],
-                     volume->clouds[i].medium.droplet);
-        gl_scene_put(scene, i, 10, grid->box.min.x, grid->box.min.y, grid->box.min.z, 0);
-        gl_scene_put(scene, i, 11, grid->box.max.x, grid->box.max.y, grid->box.max.z, 0);
+        float *record = scene->records + (size_t)i * GL_RECORD_TEXELS * 4;
+        shape_record_set_light((float(*)[4])record, &volume->clouds[i], &light->grids[i],
+                               light->boxes[i].place);
     }
 }
 

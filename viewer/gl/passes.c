@@ -48,14 +48,13 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     made->options = *options;
     const char *folder = options->shader_folder;
     static const char whole[] = "view/fullscreen.vert";
-    shape_status status =
-        options->method == SHAPE_GL_DEFAULT
-            ? gl_preview_create(&made->preview, folder, error)
-            : gl_program_create(folder, whole, view_shader(made), &made->view_program, error);
+    shape_status status = SHAPE_OK;
+    if (options->method == SHAPE_GL_DEFAULT)
+        status = gl_preview_create(&made->preview, folder, error);
     if (!status)
-        status = gl_program_create(folder, whole, "view/tonemap.frag", &made->tonemap, error);
+        status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
-        status = gl_program_create(folder, whole, "view/copy.frag", &made->copy, error);
+        status = gl_program_create(folder, whole, "view/copy.frag", "", &made->copy, error);
     if (status) {
         shape_gl_destroy(made);
         return status;
@@ -109,6 +108,28 @@ static float window_length(const shape_volume *volume)
     return count > MANY ? (float)(extent * IN_A_WINDOW / count) : 1e30f;
 }
 
+static bool is_plain(const shape_volume *volume)
+{
+    for (size_t i = 0; i < volume->cloud_count; i++)
+        if (volume->clouds[i].detailed || volume->clouds[i].field.model == SHAPE_MODEL_METABALL)
+            return false;
+    return true;
+}
+
+/* The view program of the methods that have one for the whole picture, as fits the volume. */
+static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *error)
+{
+    bool plain = is_plain(renderer->volume);
+    if (renderer->options.method == SHAPE_GL_DEFAULT ||
+        (renderer->view_program && renderer->view_plain == plain))
+        return SHAPE_OK;
+    glDeleteProgram(renderer->view_program);
+    renderer->view_program = 0;
+    renderer->view_plain = plain;
+    return gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert", view_shader(renderer),
+                             plain ? "#define FIELD_PLAIN\n" : "", &renderer->view_program, error);
+}
+
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
 {
     double start = now_ms();
@@ -118,7 +139,9 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     renderer->fade_left = 0;
     renderer->volume = volume;
     renderer->window_length = window_length(volume);
-    shape_status status = gl_scene_load(&renderer->scene, volume, error);
+    shape_status status = prepare_program(renderer, error);
+    if (!status)
+        status = gl_scene_load(&renderer->scene, volume, error);
     renderer->costs.upload_ms = now_ms() - start;
     return status;
 }
@@ -161,7 +184,8 @@ void gl_set_method(const shape_gl_renderer *r, const shape_view *view, GLuint pr
     bool exact = r->options.method == SHAPE_GL_EXACT;
     double pixel = 2 * tan(view->fov * 3.14159265358979 / 360) / view->height;
     /* exact: cells of the noise; default: voxels. */
-    gl_set_float(program, "step_scale", exact ? 0.125f : 1.5f);
+    gl_set_float(program, "step_scale", exact ? 0.4f : 1.5f);
+    gl_set_float(program, "step_deep", exact ? 1.0f : 0.0f);
     gl_set_int(program, "seed", (int)(uint32_t)(shape_hash(r->options.seed) ^ shape_hash(1)));
     gl_set_float(program, "window_length", r->window_length);
     gl_set_float(program, "step_depth", 0.25f);
@@ -219,10 +243,10 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
     if (grids->baked)
         gl_baked_place(grids->baked, &renderer->scene);
     gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
+    if (frame->sample == 0 && !is_paper(renderer))
+        gl_light_compose(grids->light, renderer, frame->camera->origin);
     if (renderer->options.method != SHAPE_GL_DEFAULT)
         return draw_whole(renderer, frame, error);
-    if (frame->sample == 0)
-        gl_light_compose(grids->light, renderer, frame->camera->origin);
     gl_preview_draw(renderer, grids, frame);
     return SHAPE_OK;
 }
@@ -332,7 +356,7 @@ void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width,
 void shape_gl_show_work(shape_gl_renderer *renderer, bool fetches, float full, int width, int height)
 {
     if (!renderer->heat && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
-                                             "view/heat.frag", &renderer->heat, NULL))
+                                             "view/heat.frag", "", &renderer->heat, NULL))
         return;
     glViewport(0, 0, width, height);
     glUseProgram(renderer->heat);
@@ -354,7 +378,7 @@ shape_status shape_gl_densities(shape_gl_renderer *renderer, const shape_vec3 *p
     shape_status status = SHAPE_OK;
     if (!renderer->density)
         status = gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
-                                   "view/density.frag", &renderer->density, error);
+                                   "view/density.frag", "", &renderer->density, error);
     int rows = (count + WIDTH - 1) / WIDTH;
     float *texels = calloc((size_t)rows * WIDTH * 4, sizeof *texels);
     if (!texels)

@@ -22,8 +22,8 @@ shape_status gl_preview_create(gl_preview *preview, const char *folder, shape_er
                     {"view/fullscreen.vert", "view/sky.frag", &preview->sky_picture_program}};
     shape_status status = SHAPE_OK;
     for (size_t i = 0; i < sizeof programs / sizeof *programs && !status; i++)
-        status =
-            gl_program_create(folder, programs[i].vertex, programs[i].fragment, programs[i].program, error);
+        status = gl_program_create(folder, programs[i].vertex, programs[i].fragment, "", programs[i].program,
+                                   error);
     return status;
 }
 

@@ -63,15 +63,17 @@ static shape_status expand(const char *folder, const char *name, int depth, char
     return status;
 }
 
-static shape_status compile(const char *folder, const char *name, GLenum kind, GLuint *shader,
-                            shape_error *error)
+static shape_status compile(const char *folder, const char *name, const char *defines, GLenum kind,
+                            GLuint *shader, shape_error *error)
 {
     /* OpenGL ES wants precisions that desktop GLSL 3.30 accepts and ignores; only the first line differs. */
     static const char head[] = "#version 330 core\nprecision highp float;\nprecision highp int;\n";
     char *source = NULL, log[400];
     size_t length = 0;
     shape_status status =
-        append(&source, &length, head, sizeof head - 1) ? SHAPE_OK : shape_error_memory(error);
+        append(&source, &length, head, sizeof head - 1) && append(&source, &length, defines, strlen(defines))
+            ? SHAPE_OK
+            : shape_error_memory(error);
     if (!status)
         status = expand(folder, name, 0, &source, &length, error);
     if (!status) {
@@ -91,14 +93,14 @@ static shape_status compile(const char *folder, const char *name, GLenum kind, G
     return status;
 }
 
-shape_status gl_program_create(const char *folder, const char *vertex, const char *fragment, GLuint *program,
-                               shape_error *error)
+shape_status gl_program_create(const char *folder, const char *vertex, const char *fragment,
+                               const char *defines, GLuint *program, shape_error *error)
 {
     GLuint vertex_shader, fragment_shader;
-    shape_status status = compile(folder, vertex, GL_VERTEX_SHADER, &vertex_shader, error);
+    shape_status status = compile(folder, vertex, defines, GL_VERTEX_SHADER, &vertex_shader, error);
     if (status)
         return status;
-    status = compile(folder, fragment, GL_FRAGMENT_SHADER, &fragment_shader, error);
+    status = compile(folder, fragment, defines, GL_FRAGMENT_SHADER, &fragment_shader, error);
     if (status) {
         glDeleteShader(vertex_shader);
         return status;

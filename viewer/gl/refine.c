@@ -84,7 +84,7 @@ static void start(shape_gl_renderer *r, const gl_order *order)
 
 static void take_light(shape_gl_renderer *r, gl_light *light)
 {
-    if (r->options.method != SHAPE_GL_DEFAULT)
+    if (r->options.method == SHAPE_GL_PAPER || r->options.method == SHAPE_GL_PAPER_NDT)
         gl_light_upload(light);
     gl_light_drop(r->grids.light);
     r->grids.light = light;

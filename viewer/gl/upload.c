@@ -1,38 +1,14 @@
 /* A volume as textures. A primitive chunk of a .neph is uploaded as it stands: spheres are texels, ellipsoids three.
- *
- * A cloud's record, GL_RECORD_TEXELS texels:
- *   0..2    rows of the world-to-cloud matrix; w: the eye in the cloud's frame
- *   3, 4    box, low with the extinction, high with the number of its tree's first node
- *   5       kappa, octaves, 1 / noise scale, model
- *   6       first sphere, first ellipsoid, nodes of the tree, support
- *   7       edge, spheres, ellipsoids, metres of the world a noise cell
- *   8       light grid: its place in the atlas [cells]
- *   9       light grid: cells along x, y, z; droplet diameter
- *   10, 11  light grid: box
- *   12..15  noise offsets of 16 octaves, x + 64 y + 4096 z
- *   16      albedo, phase function, g, g2
- *   17      lobe mix, mean cosine, share in the phase function's peak, g of the rest
+ * A cloud's record is shape/record.h's; besides, texels
  *   18      baked density: its place in the atlas [voxels], voxels a metre of the cloud's frame
  *   19      baked density: low corner of its box
- *   20..23  not used
- *   24      whether the cloud has details or is a layer (else the rest is 0), first sphere and ellipsoid of its shapes,
- *           nodes of the shapes' tree
- *   25      the first of them, smoothness, displace, 1 / displace_scale
- *   26      billow, wisp, 1 / detail_depth, 1 / detail_scale
- *   27      base, 1 / height
- *   28, 29  keys of the noises, in halves of 16 bits, the low one first
- *   30      layer: bounds, noise, blend, gain
- *   31      layer: Worley's gain, frequency and octaves; planet's radius
- *   32      layer: A, B, coverage, cut
- *   33      layer: falloff, fades at the bottom, the top, the sides
- *   34      layer: 1 / cell along x, y, z
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gl_private.h"
-#include "shape/phase.h"
+#include "shape/record.h"
 
 GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, shape_error *error)
 {
@@ -154,52 +130,22 @@ static void put(float *texel, double x, double y, double z, double w)
     texel[0] = (float)x, texel[1] = (float)y, texel[2] = (float)z, texel[3] = (float)w;
 }
 
-/* What details and layers add to a record. */
-static void fill_details(const gl_scene *scene, const shape_volume *volume, size_t i, size_t shape_root,
-                         float *record)
-{
-    const shape_volume_cloud *c = &volume->clouds[i];
-    const shape_detail *d = &c->field.detail;
-    const shape_layer *l = &c->field.layer;
-    size_t shapes = volume->cloud_count + i;
-    put(record + 96, 1, (double)scene->list_spheres[shapes], (double)scene->list_ellipsoids[shapes],
-        (double)c->detail_tree->count);
-    put(record + 100, (double)shape_root, d->smoothness, d->displace, c->inverse_displace_scale);
-    put(record + 104, d->billow, d->wisp, c->inverse_detail_depth, c->inverse_detail_scale);
-    put(record + 108, c->base, c->inverse_height, 0, 0);
-    for (int use = 0; use < 4; use++) {
-        record[112 + 2 * use] = (float)(c->keys[use] & 0xffff);
-        record[113 + 2 * use] = (float)(c->keys[use] >> 16);
-    }
-    put(record + 120, l->bounds, l->noise, l->blend, l->gain);
-    put(record + 124, l->worley_gain, l->worley_frequency, l->worley_octaves, l->planet_radius);
-    put(record + 128, l->ramp[0], l->ramp[1], l->coverage, l->cut);
-    put(record + 132, l->falloff, l->fade_bottom, l->fade_top, l->fade_side);
-    put(record + 136, c->inverse_cell.x, c->inverse_cell.y, c->inverse_cell.z, 0);
-}
-
-/* All of a record that does not depend on the eye or the light. */
-static void fill_record(const gl_scene *scene, const shape_volume *volume, size_t i, size_t root,
+/* All of a record that does not depend on the eye or the light; roots: the first node of each tree. */
+static void fill_record(const gl_scene *scene, const shape_volume *volume, size_t i, const size_t *roots,
                         float *record)
 {
     const shape_volume_cloud *c = &volume->clouds[i];
-    double scale = cbrt(fabs(shape_frame_determinant(&c->frame)));
-    float share, rest, mean = shape_phase_mean_cosine(&c->medium);
-    shape_delta_scaling(mean, &share, &rest);
-    put(record + 12, c->box.min.x, c->box.min.y, c->box.min.z, c->medium.extinction);
-    put(record + 16, c->box.max.x, c->box.max.y, c->box.max.z, (double)root);
-    put(record + 20, c->field.kappa, c->field.octaves, c->inverse_noise_scale, c->field.model);
-    put(record + 24, (double)scene->list_spheres[i], (double)scene->list_ellipsoids[i],
-        (double)c->tree->count, c->support);
-    put(record + 28, c->field.edge, (double)c->list->sphere_count, (double)c->list->ellipsoid_count,
-        scale / (double)c->inverse_noise_scale);
-    put(record + 36, 1, 1, 1, c->medium.droplet);
-    for (int octave = 0; octave < SHAPE_OCTAVES_MAX; octave++) {
-        const int *o = c->offsets[octave];
-        record[48 + octave] = (float)(octave < c->field.octaves ? o[0] + 64 * o[1] + 4096 * o[2] : 0);
+    size_t shapes = volume->cloud_count + i;
+    shape_record_places places = {.spheres = scene->list_spheres[i],
+                                  .ellipsoids = scene->list_ellipsoids[i],
+                                  .nodes = roots[c->tree_index]};
+    if (c->detailed) {
+        places.shape_spheres = scene->list_spheres[shapes];
+        places.shape_ellipsoids = scene->list_ellipsoids[shapes];
+        places.shape_nodes = roots[c->detail_tree_index];
     }
-    put(record + 64, c->medium.albedo, c->medium.phase, c->medium.g, c->medium.g2);
-    put(record + 68, c->medium.lobe_mix, mean, share, rest);
+    shape_record_fill((float(*)[4])record, c, &places);
+    put(record + 36, 1, 1, 1, c->medium.droplet); /* a light grid of one cell, until there is light */
 }
 
 shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_error *error)
@@ -232,13 +178,8 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
         return shape_error_memory(error);
     for (size_t i = 1; i < volume->tree_count; i++)
         roots[i] = roots[i - 1] + volume->trees[i - 1].count;
-    for (size_t i = 0; i < count; i++) {
-        const shape_volume_cloud *c = &volume->clouds[i];
-        float *record = scene->records + i * record_floats;
-        fill_record(scene, volume, i, roots[c->tree_index], record);
-        if (c->detailed)
-            fill_details(scene, volume, i, roots[c->detail_tree_index], record);
-    }
+    for (size_t i = 0; i < count; i++)
+        fill_record(scene, volume, i, roots, scene->records + i * record_floats);
     free(roots);
     glGenTextures(1, &scene->clouds);
     glBindTexture(GL_TEXTURE_2D, scene->clouds);
@@ -282,10 +223,7 @@ void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape
         float *record = rows + (size_t)count * record_floats;
         scene->shown[count++] = i;
         memcpy(record, scene->records + (size_t)i * record_floats, record_floats * sizeof *record);
-        shape_dvec3 eye = shape_frame_point(&c->inverse, camera->origin);
-        put(record, c->inverse.m[0][0], c->inverse.m[0][1], c->inverse.m[0][2], eye.x);
-        put(record + 4, c->inverse.m[1][0], c->inverse.m[1][1], c->inverse.m[1][2], eye.y);
-        put(record + 8, c->inverse.m[2][0], c->inverse.m[2][1], c->inverse.m[2][2], eye.z);
+        shape_record_set_eye((float(*)[4])record, c, camera->origin);
     }
     scene->shown_count = count;
     glBindTexture(GL_TEXTURE_2D, scene->clouds);

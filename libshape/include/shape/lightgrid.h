@@ -3,6 +3,7 @@
 #ifndef SHAPE_LIGHTGRID_H
 #define SHAPE_LIGHTGRID_H
 
+#include "shape/opaque.h"
 #include "shape/view.h"
 #include "shape/volume.h"
 
@@ -30,6 +31,7 @@ typedef struct shape_lightgrid_options {
     float step;      /* of the march to the sun, in cells of the noise's first octave; default 0.5 */
     bool scattering; /* solve for the scattered light too; default true. Else values 1 to 7 are 0 */
     int threads;     /* 0: all; the result does not depend on it */
+    const shape_opaque *opaque; /* finished; throws shadows on the cells' middles; default NULL */
 } shape_lightgrid_options;
 
 shape_lightgrid_options shape_lightgrid_defaults(void);

@@ -6,6 +6,7 @@
 #ifndef SHAPE_PATHTRACE_H
 #define SHAPE_PATHTRACE_H
 
+#include "shape/opaque.h"
 #include "shape/random.h"
 #include "shape/view.h"
 #include "shape/volume.h"
@@ -50,10 +51,12 @@ typedef struct shape_pathtrace_options {
     int samples; /* paths a pixel, 1 to 2^20; default 64. With `noise`: the most */
     double
         noise; /* stop once the estimated relative error (see the result) is at most this; 0: never; default 0 */
-    int max_bounces; /* collisions a path may have, 0 to 2^20; default 4096: more than paths of real clouds have */
-    uint64_t seed;           /* default 1 */
-    double sun_angle;        /* the disc's diameter, degrees, 0 (a direction) to 90; default 0.53 */
-    shape_lamp lamp;         /* default none */
+    int max_bounces; /* collisions, with surfaces too, that a path may have, 0 to 2^20; default 4096: more than paths of real clouds have */
+    uint64_t seed;   /* default 1 */
+    double sun_angle; /* the disc's diameter, degrees, 0 (a direction) to 90; default 0.53 */
+    shape_lamp lamp;  /* default none */
+    const shape_opaque *
+        opaque; /* finished; ends rays, scatters them as matt surfaces do, throws and catches shadows; default NULL */
     shape_progress progress; /* default none */
     void *progress_context;
 } shape_pathtrace_options;

@@ -154,6 +154,8 @@ typedef struct shape_set {
     shape_extra *extras;
     size_t cloud_count, list_count, extra_count;
     size_t cloud_capacity, list_capacity, extra_capacity;
+    uint32_t *name_slots; /* a table of the first named_count names; of shape_set_add_cloud alone */
+    size_t name_slot_count, named_count;
 } shape_set;
 
 shape_field shape_field_defaults(void);
@@ -170,7 +172,8 @@ shape_set *shape_set_create(shape_error *error);
 void shape_set_destroy(shape_set *set); /* NULL is allowed */
 
 /* Adds a cloud with an empty list of its own, identity frame and defaults; *index (may be NULL) gets its number.
- * Pointers into set->clouds and set->lists end with the call. A name that is taken gets "-2", "-3", ... */
+ * Pointers into set->clouds and set->lists end with the call. A name that is taken gets "-2", "-3", ...;
+ * a name that was written into a cloud afterwards may go unnoticed, until shape_set_check. */
 shape_status shape_set_add_cloud(shape_set *set, const char *name, size_t *index, shape_error *error);
 /* Adds a placed copy that shares cloud `of`'s list and description. */
 shape_status shape_set_add_copy(shape_set *set, size_t of, const shape_frame *frame, size_t *index,

@@ -34,6 +34,10 @@ shape_frame shape_transform_frame(const shape_transform *transform);
 shape_status shape_set_transform(shape_set *set, const bool *selected, const shape_transform *transform,
                                  shape_error *error);
 
+/* Applies it to one cloud by its frame alone, which takes equal factors of scale (SHAPE_ERROR_ARGUMENT where they
+ * differ). Errors: the check's too, and an extinction that leaves its range. */
+shape_status shape_cloud_transform(shape_cloud *cloud, const shape_transform *transform, shape_error *error);
+
 /* The image of an ellipsoid under a placement: exact, but for the single precision it is stored in. */
 shape_ellipsoid shape_ellipsoid_transform(const shape_ellipsoid *ellipsoid, const shape_frame *map);
 /* A sphere as the ellipsoid that it is. */

@@ -1,0 +1,17 @@
+# cmake -DHEADERS=libshape/include/shape -DOUTPUT=shape.map -P exports.cmake: the linker's list of what libshape.so
+# exports, made from the public headers, so that a new header needs no line anywhere and nothing private gets out.
+file(GLOB headers ${HEADERS}/*.h)
+set(names "")
+foreach(header ${headers})
+  file(READ ${header} text)
+  string(REGEX REPLACE "/\\*([^*]|\\*+[^*/])*\\*+/" " " text "${text}")
+  string(REGEX MATCHALL "shape_[a-z0-9_]+[ \n]*\\(" found "${text}")
+  foreach(call ${found})
+    string(REGEX REPLACE "[ \n]*\\($" "" name "${call}")
+    list(APPEND names ${name})
+  endforeach()
+endforeach()
+list(REMOVE_DUPLICATES names)
+list(SORT names)
+list(JOIN names ";\n    " lines)
+file(WRITE ${OUTPUT} "LIBSHAPE_1 {\nglobal:\n    ${lines};\nlocal:\n    *;\n};\n")

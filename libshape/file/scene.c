@@ -1,0 +1,104 @@
+/* A scene in memory: made, filled, destroyed. */
+#include "shape/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+shape_scene *shape_scene_create(shape_error *error)
+{
+    shape_scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        shape_error_memory(error);
+    return scene;
+}
+
+static void free_options(shape_scene_options *options)
+{
+    for (size_t i = 0; i < options->count; i++) {
+        free(options->items[i].name);
+        free(options->items[i].text);
+    }
+    free(options->items);
+}
+
+void shape_scene_destroy(shape_scene *scene)
+{
+    if (!scene)
+        return;
+    for (size_t i = 0; i < scene->cloud_count; i++) {
+        shape_scene_cloud *cloud = &scene->clouds[i];
+        free(cloud->name);
+        free(cloud->note);
+        free(cloud->file);
+        free(cloud->generator);
+        free(cloud->input);
+        free(cloud->copies);
+        free_options(&cloud->options);
+        free_options(&cloud->medium);
+    }
+    free_options(&scene->medium);
+    free(scene->clouds);
+    free(scene->note);
+    free(scene);
+}
+
+shape_status shape_scene_add_cloud(shape_scene *scene, shape_scene_cloud **cloud, shape_error *error)
+{
+    shape_status status = shape_array_reserve((void **)&scene->clouds, &scene->cloud_capacity,
+                                              scene->cloud_count + 1, sizeof *scene->clouds, error);
+    if (status)
+        return status;
+    *cloud = &scene->clouds[scene->cloud_count++];
+    memset(*cloud, 0, sizeof **cloud);
+    (*cloud)->place = shape_transform_defaults();
+    return SHAPE_OK;
+}
+
+shape_status shape_scene_add_copy(shape_scene_cloud *cloud, const shape_transform *place, shape_error *error)
+{
+    shape_status status = shape_array_reserve((void **)&cloud->copies, &cloud->copy_capacity,
+                                              cloud->copy_count + 1, sizeof *cloud->copies, error);
+    if (!status)
+        cloud->copies[cloud->copy_count++] = *place;
+    return status;
+}
+
+shape_status shape_scene_set_text(char **member, const char *text, shape_error *error)
+{
+    char *copy = malloc(strlen(text) + 1);
+    if (!copy)
+        return shape_error_memory(error);
+    memcpy(copy, text, strlen(text) + 1);
+    free(*member);
+    *member = copy;
+    return SHAPE_OK;
+}
+
+shape_status shape_scene_add_option(shape_scene_options *options, const char *name, const char *text,
+                                    shape_error *error)
+{
+    shape_scene_option option = {0};
+    shape_status status = shape_array_reserve((void **)&options->items, &options->capacity,
+                                              options->count + 1, sizeof *options->items, error);
+    if (!status)
+        status = shape_scene_set_text(&option.name, name, error);
+    if (!status && text)
+        status = shape_scene_set_text(&option.text, text, error);
+    if (status)
+        free(option.name);
+    else
+        options->items[options->count++] = option;
+    return status;
+}
+
+bool shape_scene_is(const void *bytes, size_t size)
+{
+    const unsigned char *c = bytes;
+    while (size && strchr(" \t\r\n", *c) && *c) {
+        c++;
+        size--;
+    }
+    return size && *c == '{';
+}

@@ -1,0 +1,117 @@
+/* Camera and light between the picture options and a scene, and --save-scene of programs that make pictures. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli_picture.h"
+#include "cli_scene.h"
+
+static void take(bool in_scene, const double *from, int count, double *to, bool *given)
+{
+    if (!in_scene || *given)
+        return;
+    memcpy(to, from, (size_t)count * sizeof *to);
+    *given = true;
+}
+
+static void use_sky(const shape_scene *scene, cli_picture *v)
+{
+    static char rgb[128]; /* for the process's life, as a word of the command line */
+    const double *c = scene->sky_radiance;
+    if (!scene->sky_given || v->sky_given)
+        return;
+    snprintf(rgb, sizeof rgb, "%.17g,%.17g,%.17g", c[0], c[1], c[2]);
+    v->sky = scene->sky == SHAPE_SKY_NONE ? "none" : scene->sky == SHAPE_SKY_CLEAR ? "clear" : rgb;
+    v->sky_given = true;
+}
+
+void cli_picture_use_scene(const shape_scene *scene)
+{
+    static const double dark[3] = {0, 0, 0};
+    cli_picture *v = &cli_picture_values;
+    if (!v->sun_given) /* a sun that the command line names shines, whatever the scene says */
+        take(scene->sun_none, dark, 3, v->sun_irradiance, &v->sun_irradiance_given);
+    take(scene->sun_given, scene->sun, 2, v->sun, &v->sun_given);
+    take(scene->sun_irradiance_given, scene->sun_irradiance, 3, v->sun_irradiance, &v->sun_irradiance_given);
+    take(scene->sun_angle_given, &scene->sun_angle, 1, &v->sun_angle, &v->sun_angle_given);
+    take(scene->lamp_given, scene->lamp_intensity, 3, v->lamp_intensity, &v->lamp_intensity_given);
+    take(scene->lamp_given, scene->lamp, 3, v->lamp, &v->lamp_given);
+    use_sky(scene, v);
+    take(scene->eye_given, scene->eye, 3, v->eye, &v->eye_given);
+    take(scene->target_given, scene->target, 3, v->target, &v->target_given);
+    take(scene->fov_given, &scene->fov, 1, &v->fov, &v->fov_given);
+    take(scene->exposure_given, &scene->exposure, 1, &v->exposure, &v->exposure_given);
+    for (int i = 0; i < 2 && scene->size_given && !v->size_given; i++)
+        v->size[i] = scene->size[i];
+    v->size_given = v->size_given || scene->size_given;
+}
+
+static void save_light(const cli_picture *v, const shape_light *light, shape_scene *scene)
+{
+    scene->sun_none = false;
+    scene->sun_given = scene->sun_irradiance_given = scene->sky_given = true;
+    memcpy(scene->sun, v->sun, sizeof v->sun);
+    memcpy(scene->sun_irradiance, v->sun_irradiance, sizeof v->sun_irradiance);
+    scene->sun_angle_given = v->sun_angle_given;
+    scene->sun_angle = v->sun_angle;
+    scene->lamp_given = v->lamp_given;
+    memcpy(scene->lamp, v->lamp, sizeof v->lamp);
+    memcpy(scene->lamp_intensity, v->lamp_intensity, sizeof v->lamp_intensity);
+    scene->sky = light->sky;
+    for (int i = 0; i < 3; i++)
+        scene->sky_radiance[i] = (double)light->sky_radiance[i];
+}
+
+static void into_scene(const shape_view *view, const shape_light *light, shape_scene *scene)
+{
+    const double eye[3] = {view->eye.x, view->eye.y, view->eye.z},
+                 target[3] = {view->target.x, view->target.y, view->target.z};
+    save_light(&cli_picture_values, light, scene);
+    scene->eye_given = scene->target_given = scene->fov_given = scene->size_given = true;
+    memcpy(scene->eye, eye, sizeof eye);
+    memcpy(scene->target, target, sizeof target);
+    scene->fov = view->fov;
+    scene->size[0] = view->width;
+    scene->size[1] = view->height;
+    scene->exposure_given = true;
+    scene->exposure = (double)view->exposure;
+}
+
+/* The files of a scene as they are named from where it will be saved. */
+static void rename_file(const cli_input *input, char **file)
+{
+    shape_error error;
+    if (!*file)
+        return;
+    char *path = cli_scene_file(input->path, *file), *name = cli_save_name(path);
+    cli_check(shape_scene_set_text(file, name, &error), &error);
+    free(path);
+    free(name);
+}
+
+static shape_scene *scene_of_file(const cli_input *input)
+{
+    shape_error error;
+    shape_scene_cloud *cloud;
+    shape_scene *scene = shape_scene_create(&error);
+    if (!scene)
+        cli_fail("%s", error.text);
+    cli_check(shape_scene_add_cloud(scene, &cloud, &error), &error);
+    cloud->file = cli_save_name(input->path);
+    return scene;
+}
+
+void cli_picture_save_scene(const cli_input *input, const shape_view *view, const shape_light *light)
+{
+    if (!cli_save_wanted())
+        return;
+    shape_scene *scene = input->scene ? input->scene : scene_of_file(input);
+    for (size_t i = 0; input->scene && i < scene->cloud_count; i++) {
+        rename_file(input, &scene->clouds[i].file);
+        rename_file(input, &scene->clouds[i].input);
+    }
+    into_scene(view, light, scene);
+    cli_save_scene(scene);
+    if (!input->scene)
+        shape_scene_destroy(scene);
+}
