@@ -8,7 +8,7 @@ libpopt-dev libjansson-dev libmd-dev
 libpng-dev libopenexr-dev
 libopenmesh-dev libtinygltf-dev
 libopenvdb-dev libnanovdb-dev libtbb-dev libimath-dev libboost-dev
-libglfw3-dev libepoxy-dev libcglm-dev
+libglfw3-dev libepoxy-dev libcglm-dev libimgui-dev
 libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
 # The last line is OpenGL, Mesa's software renderer included: pictures need no graphics card.
 

@@ -10,14 +10,17 @@
 #include "cli_picture.h"
 #include "cli_scene.h"
 #include "cli_volume.h"
+#include "shape/file.h"
 #include "shape/image.h"
 #include "view.h"
 
 static bool headless, paper_lod;
 static int method;
 static int64_t bench_frames, samples = 32, light_grid = 48;
-static const char *shader_folder;
-static bool bench_given, light_grid_given;
+static const char *shader_folder, *morph_path;
+static bool bench_given, light_grid_given, frames_given, overwrite, alpha, day_given, decay_given, time_given;
+static double frame_range[2], fps = 25, moment_time, decay_range[2];
+static view_course course;
 
 static const cli_option view_options[] = {
     {"headless", 0, CLI_FLAG, &headless, 0, 0, NULL, "no window: write one picture to -o", NULL, true},
@@ -31,12 +34,52 @@ static const cli_option view_options[] = {
      "draw N frames on an orbit of half a degree a frame, print times as JSON", &bench_given, true},
     {"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
      "paper methods: the printed distance formula for the step, not 0.1", NULL, true},
+    {"alpha", 0, CLI_FLAG, &alpha, 0, 0, NULL,
+     "pictures with coverage as alpha, the sky left out (.png, .exr)", NULL, true},
     {"shaders", 0, CLI_TEXT, &shader_folder, 0, 0, "FOLDER",
      "read the shaders from here, not the built-in ones", NULL, true},
     {0}};
 
+static const cli_option motion_options[] = {
+    {"frames", 0, CLI_RANGE, frame_range, 0, 1e9, "A..B",
+     "write frames A to B without a window, to -o with a place for the number: frame.%04d.png", &frames_given,
+     true},
+    {"overwrite", 0, CLI_FLAG, &overwrite, 0, 0, NULL,
+     "draw frames anew whose files are there and whole [they are left alone]", NULL, true},
+    {"fps", 0, CLI_NUMBER, &fps, 1e-3, 1e6, "F", "frames a second: frame N is the time N / F [25]", NULL,
+     true},
+    {"time", 0, CLI_NUMBER, &moment_time, -1e9, 1e9, "T",
+     "time of a single picture and of the window, seconds [0]", &time_given, true},
+    {"turntable", 0, CLI_NUMBER, &course.turn_seconds, 1e-3, 1e9, "T",
+     "turn the eye round its target once in T seconds [it stands]", NULL, true},
+    {"wind", 0, CLI_VECTOR, course.motion.wind, -1000, 1000, "X,Y,Z",
+     "carries the clouds, noise and all, metres a second [0,0,0]", NULL, true},
+    {"shear", 0, CLI_NUMBER, &course.motion.shear, -10, 10, "S",
+     "how much faster the wind is a metre higher, 1/s [0]", NULL, true},
+    {"drift", 0, CLI_VECTOR, course.motion.drift, -1000, 1000, "X,Y,Z",
+     "moves the noise through clouds that stay, metres a second [0,0,0]", NULL, true},
+    {"life", 0, CLI_NUMBER, &course.motion.life, 1e-3, 1e9, "T",
+     "each primitive grows, lasts and decays within T seconds, again and again [for ever]", NULL, true},
+    {"grow", 0, CLI_NUMBER, &course.motion.grow, 0, 1e9, "T",
+     "the clouds grow out of their bases in T seconds [they are there]", NULL, true},
+    {"decay", 0, CLI_RANGE, decay_range, 0, 1e9, "A..B", "the clouds decay from second A to second B [never]",
+     &decay_given, true},
+    {"morph", 0, CLI_TEXT, &morph_path, 0, 0, "OTHER", "the clouds become those of another file [none]", NULL,
+     true},
+    {"morph-time", 0, CLI_NUMBER, &course.morph_seconds, 1e-3, 1e9, "T", "in so many seconds [4]", NULL,
+     true},
+    {"day", 0, CLI_NUMBER, &course.day.hour, 0, 24, "HOUR",
+     "the sun by the time of day, solar hours at time 0 [it stands by --sun]", &day_given, true},
+    {"day-speed", 0, CLI_NUMBER, &course.day_speed, -1000, 1000, "H", "hours of the day a second [0.5]", NULL,
+     true},
+    {"latitude", 0, CLI_NUMBER, &course.day.latitude, -90, 90, "DEGREES", "for --day [50]", NULL, true},
+    {"declination", 0, CLI_NUMBER, &course.day.declination, -23.45, 23.45, "DEGREES",
+     "of the sun, for --day: 23.44 in June, -23.44 in December [0]", NULL, true},
+    {0}};
+
 static const cli_group groups[] = {{"View", view_options},
                                    {"Picture", cli_picture_options},
+                                   {"Time", motion_options},
                                    {"Volumes (.vdb, raw)", cli_volume_options},
                                    {"Medium and place of volumes", cli_optics_options},
                                    {"Scene", cli_scene_options},
@@ -46,14 +89,18 @@ static const cli_program program = {
     .name = "neph-view",
     .arguments = "IN",
     .about =
-        "Shows a .neph, a scene (docs/scene.md) or a volume (.vdb, raw) in a window, or writes a picture of "
-        "it without one. \"-\" "
-        "reads\n"
-        "standard input. --save-scene writes what the window shows when it is closed.\n"
-        "In the window: drag to turn, right drag to look round, wheel to come nearer, W A S D E Q to fly,\n"
-        "+ and - for the exposure, Home for the first view, H for help, Esc to quit.",
-    .examples = "  neph-view castellanus.neph\n"
+        "Shows a .neph, a grammar, a scene (docs/scene.md) or a volume (.vdb, raw) in a window, or writes "
+        "pictures of it without "
+        "one.\n"
+        "\"-\" reads standard input. --save-scene writes what the window shows when it is closed. A grammar\n"
+        "is derived as neph-lsys does it, by --seed. The window watches the file and shows it anew when it "
+        "is\n"
+        "saved. In it: Tab for the panel, H for all keys; drag to turn, right drag to look round, wheel to "
+        "come\n"
+        "nearer, W A S D E Q to fly, + and - for the exposure, Home for the first view, Esc to quit.",
+    .examples = "  neph-view castellanus.lsys\n"
                 "  neph-lsys castellanus.lsys | neph-view - --headless --size 1280x720 -o castellanus.png\n"
+                "  neph-view castellanus.neph --frames 0..99 --wind 1,0,0 --shear 0.02 -o frame.%04d.png\n"
                 "  neph-view castellanus.neph --bench 50\n",
     .min_arguments = 1,
     .max_arguments = 1,
@@ -69,29 +116,13 @@ static double now_ms(void)
 static const char *const method_names[] = {"default", "exact", "paper", "paper-ndt"};
 
 /* Reads the picture from the renderer and writes it. */
-static void write_picture(const view_job *job, shape_gl_renderer *renderer, const cli_common *common)
+static void write_picture(const view_job *job, const shape_view *view, shape_gl_renderer *renderer,
+                          const cli_common *common)
 {
     shape_error error;
-    size_t pixels = (size_t)job->view.width * (size_t)job->view.height;
-    float *rgba = malloc(pixels * 4 * sizeof *rgba);
-    if (!rgba)
-        cli_fail("not enough memory for the picture");
-    cli_check(shape_gl_read(renderer, rgba, &error), &error);
-    shape_image *image = shape_image_create(job->view.width, job->view.height, &error);
-    if (!image)
-        cli_fail("%s", error.text);
-    for (size_t i = 0; i < pixels; i++)
-        memcpy(image->pixels + 3 * i, rgba + 4 * i, 3 * sizeof *rgba);
-    free(rgba);
-    shape_image_format format = SHAPE_IMAGE_PNG;
-    if (strcmp(common->output, "-"))
-        cli_check(shape_image_format_find(common->output, &format, &error), &error);
-    shape_image_options options = shape_image_options_defaults();
-    options.exposure = job->view.exposure;
     unsigned char *bytes;
     size_t size;
-    cli_check(shape_image_encode(image, format, &options, &bytes, &size, &error), &error);
-    shape_image_destroy(image);
+    cli_check(view_encode(renderer, view, job->alpha, common->output, &bytes, &size, &error), &error);
     cli_write(common, bytes, size, true);
     free(bytes);
 }
@@ -100,14 +131,6 @@ static int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
-}
-
-/* The eye, turned about the target's vertical axis. */
-static void orbit(shape_view *view, double degrees)
-{
-    double angle = degrees * 3.14159265358979323846 / 180, c = cos(angle), s = sin(angle);
-    shape_dvec3 d = shape_dvec3_sub(view->eye, view->target);
-    view->eye = shape_dvec3_add(view->target, shape_dvec3_make(c * d.x + s * d.z, d.y, c * d.z - s * d.x));
 }
 
 static size_t count_primitives(const shape_volume *volume)
@@ -157,14 +180,14 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
         steps += shape_gl_get_costs(renderer).steps_per_pixel;
         fetches += shape_gl_get_costs(renderer).fetches_per_pixel;
         if (i + 1 < bench_frames)
-            orbit(&job->view, 0.5);
+            view_orbit(&job->view, 0.5);
     }
     free(rgba);
     shape_gl_costs costs = shape_gl_get_costs(renderer);
     costs.steps_per_pixel = steps / (double)bench_frames;
     costs.fetches_per_pixel = fetches / (double)bench_frames;
     if (common->output_given)
-        write_picture(job, renderer, common);
+        write_picture(job, &job->view, renderer, common);
     print_bench(job, costs, first, times, (int)bench_frames);
     free(times);
 }
@@ -174,60 +197,196 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     shape_error error;
     shape_gl_context *context;
     shape_gl_renderer *renderer;
+    shape_view view = job->view;
+    shape_light light = job->light;
+    view_course_view(&job->course, job->time, &view);
+    view_course_light(&job->course, job->time, &light);
     cli_check(shape_gl_context_create(&context, &error), &error);
     cli_check(shape_gl_create(&job->options, &renderer, &error), &error);
     cli_check(shape_gl_load(renderer, job->volume, &error), &error);
-    cli_check(shape_gl_light(renderer, &job->light, &error), &error);
+    cli_check(shape_gl_light(renderer, &light, &error), &error);
     if (bench_given) {
         bench(job, renderer, started, common);
     } else {
         for (int i = 0; i < job->samples; i++) {
-            cli_check(shape_gl_draw(renderer, &job->view, i, &error), &error);
+            cli_check(shape_gl_draw(renderer, &view, i, &error), &error);
             shape_gl_finish();
             cli_progress("drawing", (double)(i + 1) / job->samples);
         }
-        write_picture(job, renderer, common);
+        write_picture(job, &view, renderer, common);
     }
     shape_gl_destroy(renderer);
     shape_gl_context_destroy(context);
+}
+
+/* One line a mistake, then the end. */
+static void fail_lines(char *mistakes)
+{
+    for (char *line = strtok(mistakes, "\n"); line; line = strtok(NULL, "\n"))
+        cli_error("%s", line);
+    exit(CLI_FAILED);
+}
+
+static shape_set *read_source(const char *path, const view_generator *generator, view_contents *contents)
+{
+    shape_error error;
+    static char mistakes[16384];
+    if (view_source_read(path, generator, contents, mistakes, sizeof mistakes, &error))
+        fail_lines(mistakes);
+    return contents->set;
+}
+
+/* A volume that was read into input->set: like a scene, it is not watched. */
+static cli_input use_volume(view_job *job, view_contents *contents, cli_input *input)
+{
+    if (cli_save_wanted())
+        cli_fail("%s: a scene holds no volume (make primitives of it by neph-vdb first)", job->path);
+    input->volume = true;
+    job->scene = true;
+    contents->used = job->generator;
+    return *input;
+}
+
+/* What is to be shown: a scene, a .neph, a grammar or a volume, told apart by what is in it. */
+static cli_input read_input(view_job *job, view_contents *contents)
+{
+    cli_input input = {.path = job->path};
+    const char *shown = strcmp(job->path, "-") ? job->path : "standard input";
+    unsigned char *bytes;
+    shape_error error;
+    static char mistakes[16384];
+    if (cli_is_volume(job->path)) {
+        input.set = cli_read_volume(job->path);
+        return use_volume(job, contents, &input);
+    }
+    cli_check(shape_file_read(job->path, 0x40000000, &bytes, &input.size, &error), &error);
+    if (cli_is_volume_bytes(bytes, input.size)) {
+        input.set = cli_read_volume_bytes(shown, bytes, input.size);
+        free(bytes);
+        return use_volume(job, contents, &input);
+    }
+    cli_refuse_volume_options();
+    if (shape_scene_is(bytes, input.size)) {
+        cli_check(shape_scene_decode(bytes, input.size, shown, &input.scene, &error), &error);
+        input.set = cli_scene_make(input.scene, job->path);
+        job->scene = true;
+        contents->used = job->generator;
+    } else {
+        if (view_source_decode(job->path, bytes, input.size, &job->generator, contents, mistakes,
+                               sizeof mistakes, &error))
+            fail_lines(mistakes);
+        input.set = contents->set;
+    }
+    free(bytes);
+    job->generator = contents->used;
+    job->generator.seed = job->seed;
+    job->grammar = contents->grammar;
+    if (job->grammar && cli_save_wanted())
+        cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
+    return input;
+}
+
+/* A wrong command is told before the work, not after. */
+static void check_command(const cli_common *common, view_frames *frames)
+{
+    shape_error error;
+    if (!headless && !bench_given && !frames_given && common->output_given)
+        cli_wrong("-o needs --headless, --frames or --bench (a window writes no picture)");
+    if (alpha && !headless && !frames_given)
+        cli_wrong("--alpha needs --headless or --frames");
+    if (bench_given && frames_given)
+        cli_wrong("--bench and --frames are two ways to draw (give one of them)");
+    if (overwrite && !frames_given)
+        cli_wrong("--overwrite needs --frames");
+    if (frames_given && time_given)
+        cli_wrong("--time is for one picture (frame N is the time N / --fps)");
+    if (frames_given) {
+        frames->first = (int64_t)frame_range[0];
+        frames->last = (int64_t)frame_range[1];
+        if ((double)frames->first != frame_range[0] || (double)frames->last != frame_range[1])
+            cli_wrong("--frames %.9g..%.9g: expected whole numbers A..B", frame_range[0], frame_range[1]);
+        frames->fps = fps;
+        frames->overwrite = overwrite;
+        frames->output = common->output;
+        if (view_frames_check(frames, &error))
+            cli_wrong("%s", error.text);
+    } else if (common->output_given && strcmp(common->output, "-")) {
+        shape_image_format format;
+        if (shape_image_format_find(common->output, &format, &error))
+            cli_wrong("%s", error.text);
+        if (alpha && format == SHAPE_IMAGE_PFM)
+            cli_wrong("--alpha: a .pfm holds no alpha (write .png or .exr)");
+    }
+}
+
+static void plan(view_job *job, const cli_common *common)
+{
+    bool paper = method == SHAPE_GL_PAPER || method == SHAPE_GL_PAPER_NDT;
+    job->options = shape_gl_defaults();
+    job->options.method = (shape_gl_method)method;
+    job->options.shader_folder = shader_folder;
+    job->options.paper_lod = paper_lod;
+    job->options.no_background = alpha;
+    job->options.background = bench_given;
+    job->options.seed = common->seed;
+    job->options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
+    job->samples = (int)samples;
+    job->path = job->title = common->arguments[0];
+    job->alpha = alpha;
+    job->morph_path = morph_path;
+    job->time = moment_time;
+    job->seed = common->seed;
+    job->generator.seed = common->seed;
+    course.motion.seed = common->seed;
+    course.day_runs = day_given;
+    if (decay_given) {
+        course.motion.decay_start = decay_range[0];
+        course.motion.decay = decay_range[1] - decay_range[0];
+        if (!(course.motion.decay > 0))
+            cli_wrong("--decay %g: expected a range A..B of seconds", decay_range[0]);
+    }
+    job->course = course;
 }
 
 int main(int argc, char **argv)
 {
     double started = now_ms();
     cli_common common;
+    course = view_course_defaults();
     cli_parse(&program, argc, argv, &common);
     shape_error error;
-    view_job job = {.options = shape_gl_defaults(), .samples = (int)samples, .title = common.arguments[0]};
-    bool paper = method == SHAPE_GL_PAPER || method == SHAPE_GL_PAPER_NDT;
-    job.options.method = (shape_gl_method)method;
-    job.options.shader_folder = shader_folder;
-    job.options.paper_lod = paper_lod;
-    job.options.seed = common.seed;
-    job.options.background = bench_given || !headless;
-    job.options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
-    if (!headless && !bench_given && common.output_given)
-        cli_wrong("-o needs --headless or --bench (a window writes no picture)");
-    if (common.output_given && strcmp(common.output, "-")) {
-        shape_image_format format; /* a wrong suffix is told before the work, not after */
-        if (shape_image_format_find(common.output, &format, &error))
-            cli_wrong("%s", error.text);
-    }
+    view_frames frames = {0};
+    view_job job = {0};
+    view_contents contents = {0}, other = {0};
+    shape_morph *morph = NULL;
+    check_command(&common, &frames);
+    plan(&job, &common);
     cli_save_check(&common);
-    cli_input input = cli_volume_input_read(common.arguments[0]);
+    cli_input input = read_input(&job, &contents);
     job.set = input.set;
     if (input.scene)
         cli_picture_use_scene(input.scene);
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     cli_picture_apply(job.set, &job.view, &job.light);
-    cli_check(shape_volume_create(job.set, &job.volume, &error), &error);
-    job.load_ms = now_ms() - started;
-    if (headless || bench_given)
+    memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
+    if (morph_path) {
+        read_source(morph_path, &job.generator, &other);
+        cli_check(shape_morph_create(job.set, other.set, &morph, &error), &error);
+        job.morph = morph;
+    }
+    if (frames_given) {
+        cli_check(view_frames_draw(&job, &frames, &error), &error);
+    } else if (headless || bench_given) {
+        cli_check(view_job_place(&job, job.time, &error), &error);
+        job.load_ms = now_ms() - started;
         draw_headless(&job, started, &common);
-    else
+    } else {
         cli_check(view_window(&job, &error), &error);
-    shape_volume_destroy(job.volume);
+    }
+    view_job_free(&job);
+    shape_morph_destroy(morph);
+    shape_set_destroy(other.set);
     cli_picture_save_scene(&input, &job.view, &job.light);
     cli_input_free(&input);
     return cli_finish(&common);

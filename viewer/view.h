@@ -2,23 +2,59 @@
 #ifndef NEPHELE_VIEW_H
 #define NEPHELE_VIEW_H
 
+#include "cli.h"
+#include "moment.h"
+#include "shape/image.h"
 #include "shape_gl.h"
+#include "source.h"
 
 /* What the command line asked for. */
 typedef struct view_job {
-    const shape_set *set;
-    shape_volume *volume;
-    shape_view view;
-    shape_light light;
+    const shape_set *set;     /* at rest */
+    const shape_morph *morph; /* NULL: none */
+    shape_set *moved;         /* as it is at the time that is drawn */
+    shape_volume *volume;     /* of moved */
+    shape_view view;          /* at time 0 */
+    shape_light light;        /* at time 0 */
+    view_course course;
+    double time; /* of a picture without a window [s] */
     shape_gl_options options;
-    const char *title;
-    const char *output; /* a picture's path, or "-" */
-    int samples;        /* of a picture without a window, and of a window at rest */
+    const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
+    view_generator generator;              /* of a grammar */
+    bool grammar, scene, alpha;
+    int samples; /* of a picture without a window, and of a window at rest */
     double load_ms;
+    uint64_t seed; /* as given */
+    double sun[2]; /* azimuth and height, degrees, as given */
 } view_job;
 
 /* window.c: opens the window and stays until it is closed. Errors: SHAPE_ERROR_SYSTEM where there is no display. */
 shape_status view_window(view_job *job, shape_error *error);
+
+/* picture.c: pictures without a window. */
+
+/* Makes job->moved and job->volume for a time; what was there before is destroyed. */
+shape_status view_job_place(view_job *job, double time, shape_error *error);
+void view_job_free(view_job *job);
+/* What the renderer has drawn, of the view's size, as an image; with alpha where asked for. */
+shape_status view_read_image(shape_gl_renderer *renderer, int width, int height, bool alpha,
+                             shape_image **image, shape_error *error);
+/* Encodes what the renderer has drawn, in the format that the output's name asks for. */
+shape_status view_encode(shape_gl_renderer *renderer, const shape_view *view, bool alpha, const char *output,
+                         unsigned char **bytes, size_t *size, shape_error *error);
+
+/* frames.c: a sequence of pictures. */
+typedef struct view_frames {
+    int64_t first, last;
+    double fps;
+    bool overwrite;
+    const char *output; /* has one %d, or %0Nd, for the number */
+} view_frames;
+
+/* Whether the output's name has one number's place and nothing else that printf would take. */
+shape_status view_frames_check(const view_frames *frames, shape_error *error);
+/* Draws the frames that are not there yet, each by itself. */
+shape_status view_frames_draw(view_job *job, const view_frames *frames, shape_error *error);
 
 /* camera.c: the orbit and fly camera. Angles in radians; the view it writes is what renderers take. */
 typedef struct view_camera {

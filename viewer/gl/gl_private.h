@@ -172,7 +172,7 @@ struct shape_gl_renderer {
     float sky_upper[3], sky_lower[3];
     bool view_plain; /* the view program is for scenes without details, layers and metaballs */
     GLuint view_program, tonemap, density, empty_array;
-    GLuint copy, query;
+    GLuint copy, heat, query;
     gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */
     int width, height;
     float window_length; /* of the exact view's candidates [m] */

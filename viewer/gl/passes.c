@@ -85,6 +85,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     glDeleteProgram(renderer->tonemap);
     glDeleteProgram(renderer->density);
     glDeleteProgram(renderer->copy);
+    glDeleteProgram(renderer->heat);
     glDeleteQueries(1, &renderer->query);
     gl_target_free(&renderer->mean);
     gl_target_free(&renderer->parts[0]);
@@ -358,6 +359,19 @@ void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width,
     gl_set_float(renderer->tonemap, "exposure", exp2f(exposure_stops));
     glBindVertexArray(renderer->empty_array);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void shape_gl_show_work(shape_gl_renderer *renderer, bool fetches, float full, int width, int height)
+{
+    if (!renderer->heat && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
+                                             "view/heat.frag", "", &renderer->heat, NULL))
+        return;
+    glViewport(0, 0, width, height);
+    glUseProgram(renderer->heat);
+    gl_bind(renderer->heat, "work", 0, GL_TEXTURE_2D, renderer->mean.textures[1]);
+    gl_set_float(renderer->heat, "full", full);
+    gl_set_int(renderer->heat, "fetches", fetches);
+    gl_draw_triangle(renderer);
 }
 
 shape_gl_costs shape_gl_get_costs(const shape_gl_renderer *renderer)

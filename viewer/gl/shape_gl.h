@@ -32,6 +32,7 @@ typedef struct shape_gl_options {
     shape_lightgrid_options light;
     size_t bake_voxels; /* of all clouds' baked grids together, at most */
     uint64_t seed;      /* of the random starts of rays; default 1 */
+    bool no_background; /* the sky lights the clouds and is not seen behind them */
     bool
         background; /* default method: draw at once by something coarse, and make the rest on a thread meanwhile */
     bool paper_lod; /* the paper's printed distance formula for its step, rather than 0.1 */
@@ -76,6 +77,9 @@ void shape_gl_finish(void);
 shape_status shape_gl_read(shape_gl_renderer *renderer, float *rgba, shape_error *error);
 /* Shows the picture in the current framebuffer (a window of the view's size), tone-mapped. */
 void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width, int height);
+/* Shows in the same way what the picture took: steps (or, where asked for, fetches) a pixel, from black over red and
+ * yellow to white at `full` of them. */
+void shape_gl_show_work(shape_gl_renderer *renderer, bool fetches, float full, int width, int height);
 shape_gl_costs shape_gl_get_costs(const shape_gl_renderer *renderer);
 
 /* For the tests: density (red), u^2 (green) and noise (blue) at `count` points of cloud 0, by the shaders. */

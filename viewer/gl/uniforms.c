@@ -56,7 +56,7 @@ void gl_set_light(const shape_gl_renderer *r, GLuint program)
     static const float up[3] = {0, 1, 0};
     float perez[15];
     memcpy(perez, r->sky.perez, sizeof perez);
-    gl_set_int(program, "sky_kind", r->sky.kind);
+    gl_set_int(program, "sky_kind", r->options.no_background ? SHAPE_SKY_NONE : r->sky.kind);
     gl_set_vector(program, "sky_constant", r->sky.constant);
     gl_set_vector(program, "sky_sun", r->sky.sun);
     glUniform1fv(glGetUniformLocation(program, "sky_perez"), 15, perez);

@@ -1,0 +1,68 @@
+/* panel.cpp: what lies over the picture: the panel, the help, messages, wires. All of Dear ImGui is behind this header.
+ * overlay.c: the wires. */
+#ifndef NEPHELE_VIEW_PANEL_H
+#define NEPHELE_VIEW_PANEL_H
+
+#include "state.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct GLFWwindow;
+
+enum { VIEW_TIMES = 120 };
+
+/* What a frame shows. */
+typedef struct view_panel_input {
+    view_state *state;                        /* changed by the panel */
+    const view_state *base;                   /* what a value is put back to */
+    unsigned texture;                         /* the picture; 0: none yet */
+    const char *title, *doing, *error, *said; /* texts, empty where there is nothing to say */
+    int samples;                              /* drawn so far */
+    double draw_ms, light_ms, bake_ms, volume_ms, read_ms;
+    double steps, fetches; /* a pixel, of the picture */
+    size_t primitives, all_clouds;
+    const float *times; /* of the last VIEW_TIMES pictures [ms], the oldest first */
+    bool grammar, watched, open, help, playing;
+    const shape_set *placed; /* for the wires; NULL */
+} view_panel_input;
+
+/* What was wished in a frame. */
+typedef struct view_panel_wish {
+    bool undo, redo, home, copy, generate, play;
+    bool shoot, shoot_alpha;
+    int shoot_size[2];
+} view_panel_wish;
+
+/* After the window's own callbacks have been set: ImGui calls them on. */
+void view_panel_start(struct GLFWwindow *window);
+void view_panel_stop(void);
+/* Draws the picture and all that lies over it into the current framebuffer. */
+view_panel_wish view_panel_draw(const view_panel_input *input);
+/* Whether a point [window coordinates] is the panel's, by what was drawn last; and whether a text field has the keys. */
+bool view_panel_covers(double x, double y);
+bool view_panel_has_keys(void);
+/* Whether a slider is held, so that the state is not worth keeping yet. */
+bool view_panel_is_busy(void);
+
+/* --- overlay.c --- */
+
+/* Wires on the screen, in window coordinates, x right, y down. */
+typedef struct view_wires {
+    float (*lines)[4]; /* x0, y0, x1, y1; freed by view_wires_free */
+    size_t count, capacity;
+} view_wires;
+
+/* Boxes of the clouds, or three circles of each primitive (at most 3,000 of them), as the state's eye sees them. Lines
+ * are added; what is behind the eye is left out. Stops where memory is out. */
+void view_wires_boxes(view_wires *wires, const view_state *state, const shape_set *set, float width,
+                      float height);
+void view_wires_primitives(view_wires *wires, const view_state *state, const shape_set *set, float width,
+                           float height);
+void view_wires_free(view_wires *wires);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

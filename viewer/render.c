@@ -1,0 +1,610 @@
+/* The drawing thread: a quick picture first (coarse light, coarse density, fewer pixels), the full one when the state
+ * rests, sample by sample; new wishes are heard between any two steps. */
+#include "render.h"
+
+#include <epoxy/gl.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "shot.h"
+
+enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50, QUICK_LIGHT = 14, QUICK_VOXELS = 250000 };
+
+/* A set as it is seen, ready to be drawn. It goes with the last engine that has it. */
+typedef struct scene {
+    view_shared *placed;
+    shape_volume *volume;
+    int uses;
+} scene;
+
+/* One renderer and how far it is. */
+typedef struct engine {
+    shape_gl_renderer *gl;
+    scene *scene; /* what it has loaded */
+    int method, resolution;
+    bool lit;        /* that is the present one, under the present light */
+    double pixel_ms; /* of the last picture */
+} engine;
+
+struct view_renderer {
+    view_render_start start;
+    pthread_t thread;
+    pthread_mutex_t mutex;
+    pthread_cond_t asked;
+    /* Under the mutex. */
+    bool stop, fresh, shoot;
+    view_request wish;
+    view_shared *wish_set;
+    view_shot wish_shot;
+    view_picture picture;
+    /* The thread's own. */
+    view_request now;
+    view_shared *set;
+    scene *scene;
+    engine quick, full, other;
+    int sample; /* the next to draw */
+    double changed;
+    bool drawn; /* this wish has been shown in some way */
+    GLuint textures[TARGETS], framebuffers[TARGETS];
+    int sizes[TARGETS][2], next_target;
+    double volume_ms;
+};
+
+static double now_ms(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+static void say(view_renderer *r, const char *doing)
+{
+    pthread_mutex_lock(&r->mutex);
+    r->picture.doing = doing;
+    r->picture.done = !doing[0];
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+}
+
+static void tell(view_renderer *r, const char *text, bool is_error)
+{
+    pthread_mutex_lock(&r->mutex);
+    snprintf(r->picture.text, sizeof r->picture.text, "%s", text);
+    r->picture.text_is_error = is_error;
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+}
+
+/* Makes the next target that is not shown, of a size, and binds it. */
+static void bind_target(view_renderer *r, int width, int height)
+{
+    int i = r->next_target;
+    if (!r->textures[i]) {
+        glGenTextures(1, &r->textures[i]);
+        glGenFramebuffers(1, &r->framebuffers[i]);
+    }
+    if (r->sizes[i][0] != width || r->sizes[i][1] != height) {
+        glBindTexture(GL_TEXTURE_2D, r->textures[i]);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, NULL);
+        glBindFramebuffer(GL_FRAMEBUFFER, r->framebuffers[i]);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, r->textures[i], 0);
+        r->sizes[i][0] = width;
+        r->sizes[i][1] = height;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, r->framebuffers[i]);
+}
+
+static void show(const view_renderer *r, const engine *e, int width, int height)
+{
+    float exposure = r->now.state.exposure;
+    switch (r->now.state.heat) {
+    case VIEW_HEAT_NONE:
+        shape_gl_show(e->gl, exposure, width, height);
+        break;
+    case VIEW_HEAT_STEPS:
+        shape_gl_show_work(e->gl, false, 64, width, height);
+        break;
+    case VIEW_HEAT_FETCHES:
+        shape_gl_show_work(e->gl, true, 128, width, height);
+        break;
+    }
+}
+
+/* Tone-maps what the engines have drawn and hands it to the window. right: NULL, or for the right part of a split. */
+static void publish(view_renderer *r, const engine *left, const engine *right, int width, int height,
+                    double ms)
+{
+    bind_target(r, width, height);
+    show(r, left, width, height);
+    if (right) {
+        int x = (int)((float)width * r->now.state.divider);
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(x, 0, width - x, height);
+        show(r, right, width, height);
+        glDisable(GL_SCISSOR_TEST);
+    }
+    glFinish(); /* the other context must find it whole */
+    pthread_mutex_lock(&r->mutex);
+    view_picture *p = &r->picture;
+    p->texture = r->textures[r->next_target];
+    p->width = width;
+    p->height = height;
+    p->samples = r->sample;
+    p->costs = shape_gl_get_costs(left->gl);
+    p->draw_ms = ms;
+    p->volume_ms = r->volume_ms;
+    p->number++;
+    p->request = r->now.number;
+    if (p->placed != r->scene->placed) {
+        view_shared_drop(p->placed);
+        p->placed = view_shared_keep(r->scene->placed);
+    }
+    pthread_mutex_unlock(&r->mutex);
+    r->next_target = (r->next_target + 1) % TARGETS;
+    r->start.wake();
+}
+
+static void drop_scene(scene *old)
+{
+    if (!old || --old->uses)
+        return;
+    shape_volume_destroy(old->volume);
+    view_shared_drop(old->placed);
+    free(old);
+}
+
+static void free_engine(engine *e)
+{
+    shape_gl_destroy(e->gl);
+    drop_scene(e->scene);
+    memset(e, 0, sizeof *e);
+}
+
+/* Makes an engine ready for the present scene and light. The quick one makes coarse grids and waits for them; the others
+ * make fine ones, on a thread where they are of the default method. */
+static shape_status light_engine(view_renderer *r, engine *e, int method, shape_error *error)
+{
+    bool quick = e == &r->quick;
+    int resolution = quick ? QUICK_LIGHT : r->now.state.light_grid;
+    shape_status status = SHAPE_OK;
+    if (e->gl && (e->method != method || e->resolution != resolution))
+        free_engine(e);
+    if (e->lit)
+        return SHAPE_OK;
+    if (!e->gl) {
+        shape_gl_options options = r->start.options;
+        options.method = (shape_gl_method)method;
+        options.light.resolution = resolution;
+        options.background = !quick;
+        if (quick)
+            options.bake_voxels = QUICK_VOXELS;
+        status = shape_gl_create(&options, &e->gl, error);
+        e->method = method;
+        e->resolution = resolution;
+    }
+    shape_light light = view_state_light(&r->now.state);
+    if (!status && e->scene != r->scene) {
+        status = shape_gl_load(e->gl, r->scene->volume, error);
+        drop_scene(e->scene);
+        e->scene = r->scene;
+        e->scene->uses++;
+    }
+    if (!status)
+        status = shape_gl_light(e->gl, &light, error);
+    if (status)
+        free_engine(e);
+    else
+        e->lit = true;
+    return status;
+}
+
+static shape_status light_full(view_renderer *r, shape_error *error)
+{
+    const view_state *s = &r->now.state;
+    shape_status status = light_engine(r, &r->full, s->method, error);
+    if (!status && s->split)
+        status = light_engine(r, &r->other, s->other_method, error);
+    return status;
+}
+
+/* How many pixels each way are drawn as one while the view moves, so that a picture takes no longer than the budget. */
+static int coarseness(const view_renderer *r, const engine *e)
+{
+    double pixels = (double)r->now.width * (double)r->now.height;
+    int by = (int)ceil(sqrt(pixels * e->pixel_ms / BUDGET_MS)), most = e->method == SHAPE_GL_DEFAULT ? 3 : 6;
+    return by < 1 ? 1 : by > most ? most : by;
+}
+
+static shape_status draw_engine(view_renderer *r, engine *e, int width, int height, int sample,
+                                shape_error *error)
+{
+    shape_view view = view_state_view(&r->now.state, width, height);
+    bool moving = sample < 0;
+    double start = now_ms();
+    shape_status status =
+        moving ? shape_gl_draw_moving(e->gl, &view, error) : shape_gl_draw(e->gl, &view, sample, error);
+    shape_gl_finish();
+    if (moving && e->pixel_ms > 0)
+        e->pixel_ms = fmax(now_ms() - start, 0.1) / ((double)width * (double)height);
+    else if (moving)
+        e->pixel_ms = 1e-9; /* the first one made grids too, and tells nothing */
+    return status;
+}
+
+static bool has_wish(view_renderer *r)
+{
+    pthread_mutex_lock(&r->mutex);
+    bool has = r->fresh || r->stop;
+    pthread_mutex_unlock(&r->mutex);
+    return has;
+}
+
+/* A sample of one side of the picture, from x0 to x1. The slow methods draw it band by band and give up for a new wish,
+ * which begins another picture. */
+static shape_status draw_side(view_renderer *r, engine *e, int x0, int x1, shape_error *error)
+{
+    enum { BANDS = 12 };
+    int height = r->now.height, width = r->now.width;
+    if (e->method == SHAPE_GL_DEFAULT)
+        return draw_engine(r, e, width, height, r->sample, error);
+    double start = now_ms();
+    shape_status status = SHAPE_OK;
+    glEnable(GL_SCISSOR_TEST);
+    for (int band = 0; band < BANDS && !status && !has_wish(r); band++) {
+        int low = height * band / BANDS, high = height * (band + 1) / BANDS;
+        glScissor(x0, low, x1 - x0, high - low);
+        status = draw_engine(r, e, width, height, r->sample, error);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    e->pixel_ms = (now_ms() - start) / fmax((double)(x1 - x0) * height, 1);
+    return status;
+}
+
+/* A picture for the moment. */
+static shape_status draw_moving(view_renderer *r, engine *e, shape_error *error)
+{
+    int by = coarseness(r, e), width = (r->now.width + by - 1) / by, height = (r->now.height + by - 1) / by;
+    double start = now_ms();
+    shape_status status = draw_engine(r, e, width, height, -1, error);
+    r->sample = 0;
+    if (!status)
+        publish(r, e, NULL, width, height, now_ms() - start);
+    r->drawn = true;
+    return status;
+}
+
+/* Whether the engines that a picture at rest needs are ready. */
+static bool is_full(const view_renderer *r)
+{
+    return r->full.lit && (!r->now.state.split || r->other.lit);
+}
+
+/* Whether finer grids are still to come or to be faded in. */
+static bool is_pending(const view_renderer *r)
+{
+    return shape_gl_pending(r->full.gl) || (r->now.state.split && shape_gl_pending(r->other.gl));
+}
+
+/* While finer grids are made: a look at what has come of them, as a picture for the moment. */
+static shape_status draw_pending(view_renderer *r, shape_error *error)
+{
+    const struct timespec pause = {0, 20000000};
+    bool split = r->now.state.split;
+    double start = now_ms();
+    nanosleep(&pause, NULL);
+    shape_status status = draw_engine(r, &r->full, r->now.width, r->now.height, -1, error);
+    double ms = now_ms() - start - 20;
+    split = split && r->other.method == SHAPE_GL_DEFAULT; /* the slow ones wait for their turn */
+    if (!status && split)
+        status = draw_engine(r, &r->other, r->now.width, r->now.height, -1, error);
+    if (!status)
+        publish(r, &r->full, split ? &r->other : NULL, r->now.width, r->now.height, ms);
+    r->sample = 0;
+    r->drawn = true;
+    return status;
+}
+
+static shape_status draw_sample(view_renderer *r, shape_error *error)
+{
+    bool split = r->now.state.split;
+    double start = now_ms();
+    int width = r->now.width, line = split ? (int)((float)width * r->now.state.divider) : width;
+    shape_status status = draw_side(r, &r->full, 0, line, error);
+    double ms = now_ms() - start;
+    if (!status && split)
+        status = draw_side(r, &r->other, line, width, error);
+    if (!status && has_wish(r))
+        return SHAPE_OK; /* perhaps not all of it has been drawn */
+    r->sample++;
+    r->drawn = true;
+    if (shape_gl_refined(r->full.gl) || (split && shape_gl_refined(r->other.gl)))
+        r->sample = 0; /* the mean would be of two pictures */
+    if (!status)
+        publish(r, &r->full, split ? &r->other : NULL, r->now.width, r->now.height, ms);
+    return status;
+}
+
+static shape_status make_scene(view_renderer *r, shape_error *error)
+{
+    double start = now_ms();
+    shape_set *made;
+    scene *next = calloc(1, sizeof *next);
+    if (!next)
+        return shape_error_memory(error);
+    next->uses = 1;
+    shape_status status =
+        view_state_set(&r->now.state, view_shared_set(r->set), r->start.morph, &made, error);
+    if (!status) {
+        next->placed = view_shared_make(made);
+        status = next->placed ? shape_volume_create(made, &next->volume, error) : shape_error_memory(error);
+    }
+    if (status) {
+        drop_scene(next);
+        return status;
+    }
+    drop_scene(r->scene);
+    r->scene = next;
+    r->volume_ms = now_ms() - start;
+    return SHAPE_OK;
+}
+
+/* --- what a new wish changes --- */
+
+/* Whether what was drawn only has to be shown anew: by another exposure, as a map of heat. */
+static bool same_picture(const view_request *was, const view_request *is)
+{
+    view_request other;
+    memcpy(&other, was, sizeof other);
+    other.number = is->number;
+    other.state.exposure = is->state.exposure;
+    other.state.heat = is->state.heat;
+    other.state.boxes = is->state.boxes;
+    other.state.outlines = is->state.outlines;
+    other.state.samples = is->state.samples;
+    other.state.generator = is->state.generator; /* makes another set in time */
+    return !memcmp(&other, is, sizeof other);
+}
+
+static bool moves_in_time(const view_renderer *r, const view_state *s)
+{
+    return r->start.morph || shape_motion_is_on(&s->course.motion);
+}
+
+/* Takes a wish over; false where nothing can be drawn. */
+static bool adopt(view_renderer *r, const view_request *wish, view_shared *set)
+{
+    view_state *was = &r->now.state;
+    const view_state *is = &wish->state;
+    bool other_time = was->time != is->time && moves_in_time(r, is);
+    bool clouds = !r->scene || set != r->set || other_time || !view_state_same_clouds(was, is);
+    bool light = clouds || !view_state_same_light(was, is);
+    bool grid = was->light_grid != is->light_grid || was->method != is->method ||
+                was->other_method != is->other_method || was->split != is->split;
+    bool same =
+        !clouds && set == r->set && r->drawn && r->full.lit && r->sample && same_picture(&r->now, wish);
+    if (set != r->set) {
+        view_shared_drop(r->set);
+        r->set = set;
+    } else {
+        view_shared_drop(set);
+    }
+    memcpy(&r->now, wish, sizeof *wish);
+    if (same) {
+        publish(r, &r->full, is->split ? &r->other : NULL, wish->width, wish->height, r->picture.draw_ms);
+        return true;
+    }
+    r->sample = 0;
+    r->changed = now_ms();
+    r->drawn = false;
+    if (light)
+        r->quick.lit = false;
+    if (light || grid)
+        r->full.lit = r->other.lit = false;
+    shape_error error;
+    if (!clouds)
+        return r->scene != NULL;
+    if (make_scene(r, &error)) {
+        tell(r, error.text, true);
+        return r->scene != NULL;
+    }
+    tell(r, "", false);
+    return true;
+}
+
+static void take_shot(view_renderer *r, const view_shot *s)
+{
+    shape_error error;
+    char text[512];
+    say(r, "screenshot");
+    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &r->start.options, &error);
+    if (status)
+        snprintf(text, sizeof text, "screenshot: %.480s", error.text);
+    else
+        snprintf(text, sizeof text, "wrote %.480s", s->path);
+    tell(r, text, status != SHAPE_OK);
+}
+
+/* --- the thread --- */
+
+static void sleep_until(view_renderer *r, double ms)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_REALTIME, &time);
+    time.tv_sec += (time_t)(ms / 1e3);
+    time.tv_nsec += (long)(fmod(ms, 1e3) * 1e6);
+    if (time.tv_nsec >= 1000000000L) {
+        time.tv_nsec -= 1000000000L;
+        time.tv_sec++;
+    }
+    pthread_cond_timedwait(&r->asked, &r->mutex, &time);
+}
+
+/* Whether there is anything to do but wait for a wish. */
+static bool is_idle(const view_renderer *r)
+{
+    if (!r->scene)
+        return true;
+    return r->drawn && is_full(r) && r->sample >= r->now.state.samples && !is_pending(r);
+}
+
+/* One step of work, short where it can be. */
+static shape_status step(view_renderer *r, shape_error *error)
+{
+    const view_state *s = &r->now.state;
+    bool full = is_full(r);
+    bool rests = now_ms() - r->changed > REST_MS;
+    shape_status status = SHAPE_OK;
+    if (!r->drawn && (!full || !rests)) {
+        engine *e = r->full.lit ? &r->full : &r->quick;
+        if (!e->lit)
+            status = light_engine(r, e, SHAPE_GL_DEFAULT, error);
+        return status ? status : draw_moving(r, e, error);
+    }
+    if (!rests)
+        return SHAPE_OK;
+    if (!full) {
+        say(r, "light");
+        status = light_full(r, error);
+        return status || r->full.method != SHAPE_GL_DEFAULT ? status : draw_pending(r, error);
+    }
+    if (is_pending(r))
+        return draw_pending(r, error);
+    say(r, "drawing");
+    return r->sample < s->samples ? draw_sample(r, error) : SHAPE_OK;
+}
+
+static void *render_thread(void *context)
+{
+    view_renderer *r = context;
+    view_request *wish = malloc(sizeof *wish);
+    view_shot *wanted = malloc(sizeof *wanted);
+    shape_error error;
+    bool broken = false;
+    r->start.make_current(r->start.context, true);
+    for (bool stop = !wish || !wanted; !stop;) {
+        pthread_mutex_lock(&r->mutex);
+        bool idle = is_idle(r) || broken;
+        if (idle && !r->fresh && !r->shoot && !r->stop) {
+            r->picture.done = true;
+            r->picture.doing = "";
+            r->start.wake();
+            while (!r->fresh && !r->shoot && !r->stop)
+                pthread_cond_wait(&r->asked, &r->mutex);
+        }
+        if (!r->fresh && !r->stop && !r->shoot && r->drawn && now_ms() - r->changed <= REST_MS)
+            sleep_until(r, REST_MS - (now_ms() - r->changed) + 1);
+        stop = r->stop;
+        bool fresh = r->fresh, shoot = r->shoot;
+        view_shared *set = NULL;
+        if (fresh) {
+            memcpy(wish, &r->wish, sizeof *wish);
+            set = r->wish_set;
+            r->wish_set = NULL;
+        }
+        if (shoot)
+            memcpy(wanted, &r->wish_shot, sizeof *wanted);
+        r->fresh = r->shoot = false;
+        pthread_mutex_unlock(&r->mutex);
+        if (stop) {
+            view_shared_drop(set);
+            break;
+        }
+        if (fresh)
+            broken = !adopt(r, wish, set);
+        if (shoot && r->scene)
+            take_shot(r, wanted);
+        if (!broken && !is_idle(r) && step(r, &error)) {
+            tell(r, error.text, true);
+            broken = true; /* until the next wish */
+        }
+    }
+    free(wish);
+    free(wanted);
+    free_engine(&r->quick);
+    free_engine(&r->full);
+    free_engine(&r->other);
+    glDeleteTextures(TARGETS, r->textures);
+    glDeleteFramebuffers(TARGETS, r->framebuffers);
+    r->start.make_current(r->start.context, false);
+    return NULL;
+}
+
+view_renderer *view_renderer_start(const view_render_start *start, shape_error *error)
+{
+    view_renderer *r = calloc(1, sizeof *r);
+    if (!r) {
+        shape_error_memory(error);
+        return NULL;
+    }
+    r->start = *start;
+    r->picture.doing = "";
+    pthread_mutex_init(&r->mutex, NULL);
+    pthread_cond_init(&r->asked, NULL);
+    int failed = pthread_create(&r->thread, NULL, render_thread, r);
+    if (!failed)
+        return r;
+    shape_error_set(error, SHAPE_ERROR_SYSTEM, "no thread: %s", strerror(failed));
+    free(r);
+    return NULL;
+}
+
+void view_renderer_stop(view_renderer *r)
+{
+    if (!r)
+        return;
+    pthread_mutex_lock(&r->mutex);
+    r->stop = true;
+    pthread_cond_signal(&r->asked);
+    pthread_mutex_unlock(&r->mutex);
+    pthread_join(r->thread, NULL);
+    view_shared_drop(r->wish_set);
+    view_shared_drop(r->set);
+    view_shared_drop(r->picture.placed);
+    drop_scene(r->scene);
+    pthread_cond_destroy(&r->asked);
+    pthread_mutex_destroy(&r->mutex);
+    free(r);
+}
+
+void view_renderer_ask(view_renderer *r, const view_request *request, view_shared *set)
+{
+    pthread_mutex_lock(&r->mutex);
+    view_shared_drop(r->wish_set);
+    r->wish_set = view_shared_keep(set);
+    memcpy(&r->wish, request, sizeof *request);
+    r->fresh = true;
+    r->picture.done = false;
+    pthread_cond_signal(&r->asked);
+    pthread_mutex_unlock(&r->mutex);
+}
+
+void view_renderer_shoot(view_renderer *r, const char *path, int width, int height, bool alpha,
+                         const char *comment)
+{
+    pthread_mutex_lock(&r->mutex);
+    snprintf(r->wish_shot.path, sizeof r->wish_shot.path, "%s", path);
+    snprintf(r->wish_shot.comment, sizeof r->wish_shot.comment, "%s", comment);
+    r->wish_shot.width = width;
+    r->wish_shot.height = height;
+    r->wish_shot.alpha = alpha;
+    r->shoot = true;
+    r->picture.done = false;
+    pthread_cond_signal(&r->asked);
+    pthread_mutex_unlock(&r->mutex);
+}
+
+void view_renderer_look(view_renderer *r, view_picture *picture)
+{
+    pthread_mutex_lock(&r->mutex);
+    *picture = r->picture;
+    view_shared_keep(picture->placed);
+    pthread_mutex_unlock(&r->mutex);
+}

@@ -1,0 +1,66 @@
+/* Screenshots: drawn by a renderer of their own, so by the fine grids alone and of any size that the GPU draws. */
+#include "shot.h"
+
+#include <stdlib.h>
+
+#include "shape/file.h"
+#include "view.h"
+
+static shape_status draw_shot(const view_shot *s, const view_state *state, const shape_volume *volume,
+                              shape_gl_renderer *gl, shape_error *error)
+{
+    shape_view view = view_state_view(state, s->width, s->height);
+    shape_light light = view_state_light(state);
+    shape_status status = shape_gl_load(gl, volume, error);
+    if (!status)
+        status = shape_gl_light(gl, &light, error);
+    for (int i = 0; i < state->samples && !status; i++) {
+        status = shape_gl_draw(gl, &view, i, error);
+        shape_gl_finish();
+    }
+    return status;
+}
+
+static shape_status write_shot(const view_shot *s, float exposure, shape_gl_renderer *gl, shape_error *error)
+{
+    shape_image_format format;
+    shape_image *image;
+    shape_status status = shape_image_format_find(s->path, &format, error);
+    if (!status)
+        status = view_read_image(gl, s->width, s->height, s->alpha, &image, error);
+    if (status)
+        return status;
+    const shape_image_text text = {"nephele", s->comment};
+    shape_image_options options = shape_image_options_defaults();
+    options.exposure = exposure;
+    options.texts = &text;
+    options.text_count = 1;
+    unsigned char *bytes;
+    size_t size;
+    status = shape_image_encode(image, format, &options, &bytes, &size, error);
+    shape_image_destroy(image);
+    if (status)
+        return status;
+    status = shape_file_write(s->path, bytes, size, error);
+    free(bytes);
+    return status;
+}
+
+shape_status view_shot_take(const view_shot *s, const view_state *state, const shape_volume *volume,
+                            const shape_gl_options *usual, shape_error *error)
+{
+    shape_gl_renderer *gl;
+    shape_gl_options options = *usual;
+    options.method = (shape_gl_method)state->method;
+    options.light.resolution = state->light_grid;
+    options.no_background = s->alpha;
+    options.background = false;
+    shape_status status = shape_gl_create(&options, &gl, error);
+    if (status)
+        return status;
+    status = draw_shot(s, state, volume, gl, error);
+    if (!status)
+        status = write_shot(s, state->exposure, gl, error);
+    shape_gl_destroy(gl);
+    return status;
+}

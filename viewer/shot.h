@@ -1,0 +1,19 @@
+/* shot.c: a picture file of what the window shows. */
+#ifndef NEPHELE_VIEW_SHOT_H
+#define NEPHELE_VIEW_SHOT_H
+
+#include "shape_gl.h"
+#include "state.h"
+
+typedef struct view_shot {
+    char path[4096], comment[8192]; /* comment: kept in the file as the text "nephele" */
+    int width, height;
+    bool alpha;
+} view_shot;
+
+/* Draws all samples and writes the file; the format is that of the path's suffix. The volume is that of the state. An
+ * OpenGL context is current. */
+shape_status view_shot_take(const view_shot *shot, const view_state *state, const shape_volume *volume,
+                            const shape_gl_options *options, shape_error *error);
+
+#endif
