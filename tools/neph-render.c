@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "cli_picture.h"
+#include "shape/denoise.h"
 #include "shape/file.h"
 #include "shape/image.h"
 #include "shape/imageerror.h"
@@ -19,8 +20,8 @@ enum { MAX_IMAGE_FILE = 0x7fffffff };
 static int method, rule = SHAPE_RULE_EXPONENTIAL, lighting = SHAPE_MARCH_GRID;
 static int64_t samples = 64, max_bounces = 4096, steps = 100, light_steps = 50, light_resolution = 48;
 static double growth = 1, noise, sun_angle = 0.53, lamp[3], lamp_intensity[3] = {10, 10, 10}, tolerance;
-static bool jitter, stats, compare, samples_given, noise_given, lamp_given, tolerance_given, march_given,
-    bounces_given, angle_given;
+static bool jitter, denoise, stats, compare, samples_given, noise_given, lamp_given, tolerance_given,
+    march_given, bounces_given, angle_given;
 
 static const cli_option render_options[] = {
     {"method", 0, CLI_CHOICE, &method, 0, 0, "reference|march",
@@ -39,6 +40,8 @@ static const cli_option render_options[] = {
      false},
     {"lamp-intensity", 0, CLI_VECTOR, lamp_intensity, 0, 1e18, "R,G,B",
      "of the lamp: irradiance times distance squared [10,10,10]", NULL, false},
+    {"denoise", 0, CLI_FLAG, &denoise, 0, 0, NULL,
+     "smooth the grain of the paths where their variance explains it; no longer unbiased", NULL, false},
     {"stats", 0, CLI_FLAG, &stats, 0, 0, NULL, "JSON about the picture on standard output (needs -o)", NULL,
      true},
     {0}};
@@ -191,6 +194,19 @@ static void report(const picture_outcome *outcome, const shape_image *image, dou
                          "seconds", time, "mean", three(mean), "rel_error", rel_error));
 }
 
+/* The picture without its grain, in place. variance: of its pixels. */
+static void smooth(shape_image *image, const float *variance)
+{
+    shape_error error;
+    size_t bytes = 3 * (size_t)image->width * (size_t)image->height * sizeof(float);
+    float *result = malloc(bytes);
+    if (!result)
+        cli_fail("out of memory");
+    cli_check(shape_denoise(image->pixels, variance, image->width, image->height, result, &error), &error);
+    memcpy(image->pixels, result, bytes);
+    free(result);
+}
+
 static picture_outcome trace(const cli_common *common, const shape_volume *volume, const shape_view *view,
                              const shape_light *light, shape_image *image)
 {
@@ -198,11 +214,20 @@ static picture_outcome trace(const cli_common *common, const shape_volume *volum
     shape_tracer *tracer;
     shape_pathtrace_result result;
     shape_pathtrace_options options = pathtrace_options(common);
+    float *layer = shape_image_layer_pixels(image, "variance"), *variance = layer;
+    if (denoise && !layer) {
+        variance = malloc(3 * (size_t)image->width * (size_t)image->height * sizeof *variance);
+        if (!variance)
+            cli_fail("out of memory");
+    }
     cli_check(shape_tracer_create(volume, &tracer, &error), &error);
-    cli_check(shape_pathtrace_render(tracer, view, light, &options, image->pixels,
-                                     shape_image_layer_pixels(image, "variance"), &result, &error),
+    cli_check(shape_pathtrace_render(tracer, view, light, &options, image->pixels, variance, &result, &error),
               &error);
     shape_tracer_destroy(tracer);
+    if (denoise)
+        smooth(image, variance);
+    if (!layer)
+        free(variance);
     picture_outcome outcome = {"reference", result.samples,
                                isfinite(result.rel_error) ? result.rel_error : -1};
     return outcome;
@@ -246,6 +271,8 @@ static void check_command(const cli_common *common)
         cli_wrong("--rule, --steps, --growth, --jitter and the light options belong to --method march");
     if (method == 1 && (noise_given || lamp_given || bounces_given || angle_given))
         cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
+    if (method == 1 && denoise)
+        cli_wrong("--denoise belongs to --method reference");
     if (jitter && rule != SHAPE_RULE_EXPONENTIAL)
         cli_wrong("--jitter goes with --rule exponential only");
     if (method == 1 && samples_given && samples > 4096)
