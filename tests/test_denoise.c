@@ -89,6 +89,19 @@ static void what_has_no_noise_stays_as_it_is(void **state)
     assert_memory_equal(p.result, p.radiance, sizeof p.radiance);
 }
 
+/* A pixel all of whose paths ended in the dark has a variance of 0, which is chance and no knowledge. */
+static void a_dark_speck_goes(void **state)
+{
+    (void)state;
+    static noisy p;
+    make(&p, 1, 0.5f);
+    size_t at = 3 * (size_t)(W * (H / 2) + W / 2);
+    for (size_t c = 0; c < 3; c++)
+        p.radiance[at + c] = p.variance[at + c] = 0;
+    assert_int_equal(shape_denoise(p.radiance, p.variance, W, H, p.result, NULL), SHAPE_OK);
+    assert_true(p.result[at] > 0.5f);
+}
+
 static void bad_pictures_are_refused(void **state)
 {
     (void)state;
@@ -108,6 +121,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noise_on_a_plain_goes), cmocka_unit_test(an_edge_stays),
-        cmocka_unit_test(what_has_no_noise_stays_as_it_is), cmocka_unit_test(bad_pictures_are_refused)};
+        cmocka_unit_test(what_has_no_noise_stays_as_it_is), cmocka_unit_test(a_dark_speck_goes),
+        cmocka_unit_test(bad_pictures_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,8 +32,8 @@ static size_t offset_of(const picture *p, int x, int y)
     return 3 * ((size_t)clamp(y, p->height - 1) * (size_t)p->width + (size_t)clamp(x, p->width - 1));
 }
 
-/* The variance is itself estimated from few samples, so each pixel takes the mean of its 3x3 neighbours. A pixel
- * without any (sky) keeps none. */
+/* The variance is itself estimated from few samples, and is 0 where chance ended every path in the dark, so each pixel
+ * takes the mean of its 3x3 neighbours. */
 static void smooth_variance(const picture *p, const float *variance)
 {
 #pragma omp parallel for
@@ -45,7 +45,7 @@ static void smooth_variance(const picture *p, const float *variance)
                     for (int i = -1; i <= 1; i++)
                         sum += variance[offset_of(p, x + i, y + j) + c];
                 size_t at = offset_of(p, x, y) + c;
-                p->variance[at] = variance[at] > 0 ? sum / 9 : 0;
+                p->variance[at] = sum / 9;
             }
 }
 
