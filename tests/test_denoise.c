@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "shape/denoise.h"
@@ -102,6 +103,26 @@ static void a_dark_speck_goes(void **state)
     assert_true(p.result[at] > 0.5f);
 }
 
+/* One bright path of some dozen in the sky: its variance is the square of its mean. The sky around keeps its radiance to
+ * the last bit, but for the eight neighbours that share its variance. */
+static void a_bright_speck_leaves_no_box(void **state)
+{
+    (void)state;
+    static noisy p;
+    make(&p, 1, 0);
+    size_t at = 3 * (size_t)(W * (H / 2) + W / 2);
+    for (size_t c = 0; c < 3; c++) {
+        p.radiance[at + c] = 1.5f;
+        p.variance[at + c] = 0.25f;
+    }
+    assert_int_equal(shape_denoise(p.radiance, p.variance, W, H, p.result, NULL), SHAPE_OK);
+    assert_true(p.result[at] < 1.1f);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            if (abs(x - W / 2) > 1 || abs(y - H / 2) > 1)
+                assert_true(p.result[3 * (y * W + x)] == 1);
+}
+
 static void bad_pictures_are_refused(void **state)
 {
     (void)state;
@@ -119,9 +140,11 @@ static void bad_pictures_are_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noise_on_a_plain_goes), cmocka_unit_test(an_edge_stays),
-        cmocka_unit_test(what_has_no_noise_stays_as_it_is), cmocka_unit_test(a_dark_speck_goes),
-        cmocka_unit_test(bad_pictures_are_refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(noise_on_a_plain_goes),
+                                       cmocka_unit_test(an_edge_stays),
+                                       cmocka_unit_test(what_has_no_noise_stays_as_it_is),
+                                       cmocka_unit_test(a_dark_speck_goes),
+                                       cmocka_unit_test(a_bright_speck_leaves_no_box),
+                                       cmocka_unit_test(bad_pictures_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

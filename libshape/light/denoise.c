@@ -90,6 +90,14 @@ static void add_offset(const picture *p, int y, int dx, int dy, float *column, f
     }
 }
 
+/* A pixel moves no further than three standard deviations of its own: otherwise one bright path that strayed into the
+ * sky, so noisy that the sky is like it, would leave a box as large as the window. */
+static float bounded(const picture *p, size_t at, float value)
+{
+    float most = 3 * sqrtf(p->variance[at]), own = p->radiance[at];
+    return fminf(fmaxf(value, own - most), own + most);
+}
+
 /* One row of the result. scratch holds width + 2 PATCH and 4 width numbers. */
 static void filter_row(const picture *p, int y, float *scratch, float *result)
 {
@@ -102,8 +110,7 @@ static void filter_row(const picture *p, int y, float *scratch, float *result)
     for (int x = 0; x < p->width; x++) {
         size_t at = offset_of(p, x, y);
         for (size_t c = 0; c < 3; c++) /* a pixel is like itself, so its weight is not 0 */
-            result[at + c] = p->variance[at + c] > 0 ? sums[4 * (size_t)x + c] / sums[4 * (size_t)x + 3]
-                                                     : p->radiance[at + c];
+            result[at + c] = bounded(p, at + c, sums[4 * (size_t)x + c] / sums[4 * (size_t)x + 3]);
     }
 }
 
