@@ -33,7 +33,7 @@ static size_t offset_of(const picture *p, int x, int y)
 }
 
 /* The variance is itself estimated from few samples, and is 0 where chance ended every path in the dark, so each pixel
- * takes the mean of its 3x3 neighbours. */
+ * takes the mean of its 3x3 neighbours; but one that a bright path has made noisier than that keeps what it has. */
 static void smooth_variance(const picture *p, const float *variance)
 {
 #pragma omp parallel for
@@ -45,7 +45,7 @@ static void smooth_variance(const picture *p, const float *variance)
                     for (int i = -1; i <= 1; i++)
                         sum += variance[offset_of(p, x + i, y + j) + c];
                 size_t at = offset_of(p, x, y) + c;
-                p->variance[at] = sum / 9;
+                p->variance[at] = fmaxf(sum / 9, variance[at]);
             }
 }
 
