@@ -8,7 +8,7 @@ BEGIN {
     print "# Gallery"
     print ""
     print "Every cloud here is a command you can type, and most are smaller than the picture of them. Look at one from all"
-    print "sides by ending its command with `| neph-view -`; change a number, or the `--seed`, and it is yours."
+    print "sides with `neph-view -` in place of the last command; change a number, or the `--seed`, and it is yours."
     print ""
     print "The pictures are path-traced by `neph-render` (its reference method, some dozen paths a pixel, `--denoise`), made by"
     print "`sh examples/gallery/make.sh build/release/bin docs/gallery` from [clouds.txt](../examples/gallery/clouds.txt), as is"
