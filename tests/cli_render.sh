@@ -51,12 +51,24 @@ grep -q '"rmse": 1.0' dark.json || fail "darkness and a white furnace are not 1 
 "$bin/neph-render" -q c.neph --size 16x9 --spp 4096 --error 0.05 -o n.exr --stats >fine.json
 spp() { sed -n 's/.*"spp": \([0-9]*\).*/\1/p' "$1"; }
 [ "$(spp rough.json)" -lt "$(spp fine.json)" ] || fail "less noise does not take more paths"
+# --denoise comes nearer to many paths (of 480x300 pixels by two thirds; the smaller, the less), and leaves a clear sky.
+"$bin/neph-gauss" -q --count 6 --extinction 4 --g 0 -o even.neph
+view="--size 160x90 --seed 3"
+"$bin/neph-render" -q even.neph $view --spp 16 -o grain.pfm
+"$bin/neph-render" -q even.neph $view --spp 16 --denoise -o smooth.pfm
+"$bin/neph-render" -q even.neph $view --seed 4 --spp 128 -o many.pfm
+relmse() { "$bin/neph-render" --compare "$1" many.pfm | sed -n 's/.*"relmse": \([0-9.e-]*\).*/\1/p'; }
+awk "BEGIN { exit !($(relmse smooth.pfm) < 0.75 * $(relmse grain.pfm)) }" || fail "--denoise does not take a quarter of the error away"
+"$bin/neph-render" -q c.neph $view --spp 8 --eye 0,0,50 --target 0,0,99 -o sky.pfm
+"$bin/neph-render" -q c.neph $view --spp 8 --eye 0,0,50 --target 0,0,99 --denoise -o sky2.pfm
+"$bin/neph-render" --compare sky.pfm sky2.pfm --tolerance 1e-4 >/dev/null || fail "--denoise changes a clear sky"
 
 wrong "expected none, clear" "$bin/neph-render" c.neph -o a.png --sky blue
 wrong "height" "$bin/neph-render" c.neph -o a.png --sun 0,91
 wrong "same point" "$bin/neph-render" c.neph -o a.png --eye 1,1,1 --target 1,1,1
 wrong "suffix\|\.png" "$bin/neph-render" c.neph -o a.jpg
 wrong "WIDTHxHEIGHT" "$bin/neph-render" c.neph -o a.png --size 12
+wrong "belongs to --method reference" "$bin/neph-render" c.neph --method march --denoise -o a.png
 wrong "name the picture" "$bin/neph-render" c.neph --stats
 wrong "two pictures" "$bin/neph-render" --compare a.exr
 wrong "belongs to --compare" "$bin/neph-render" c.neph -o a.png --tolerance 1

@@ -9,9 +9,10 @@
 #include "cli.h"
 #include "cli_picture.h"
 #include "cli_scene.h"
+#include "cli_volume.h"
 #include "render_march.h"
 #include "render_opaque.h"
-#include "cli_volume.h"
+#include "shape/denoise.h"
 #include "shape/file.h"
 #include "shape/image.h"
 #include "shape/imageerror.h"
@@ -27,7 +28,7 @@ static const char *const method_names[] = {"reference", "march", "paper", "paper
 static int method;
 static int64_t samples = 64, max_bounces = 4096;
 static double noise, tolerance;
-static bool stats, compare, samples_given, noise_given, tolerance_given, bounces_given, paper_lod;
+static bool denoise, stats, compare, samples_given, noise_given, tolerance_given, bounces_given, paper_lod;
 
 static const cli_option render_options[] = {
     {"method", 0, CLI_CHOICE, &method, 0, 0, "reference|march|paper|paper-ndt",
@@ -47,6 +48,8 @@ static const cli_option render_options[] = {
     {"lamp-intensity", 0, CLI_VECTOR, cli_picture_values.lamp_intensity, 0, 1e18, "R,G,B",
      "of the lamp: irradiance times distance squared [10,10,10]", &cli_picture_values.lamp_intensity_given,
      false},
+    {"denoise", 0, CLI_FLAG, &denoise, 0, 0, NULL,
+     "smooth the grain of the paths where their variance explains it; no longer unbiased", NULL, false},
     {"stats", 0, CLI_FLAG, &stats, 0, 0, NULL, "JSON about the picture on standard output (needs -o)", NULL,
      true},
     {0}};
@@ -204,6 +207,19 @@ typedef struct picture {
     shape_image *image;
 } picture;
 
+/* The picture without its grain, in place. variance: of its pixels. */
+static void smooth(shape_image *image, const float *variance)
+{
+    shape_error error;
+    size_t bytes = 3 * (size_t)image->width * (size_t)image->height * sizeof(float);
+    float *result = malloc(bytes);
+    if (!result)
+        cli_fail("out of memory");
+    cli_check(shape_denoise(image->pixels, variance, image->width, image->height, result, &error), &error);
+    memcpy(image->pixels, result, bytes);
+    free(result);
+}
+
 static picture_outcome trace(const cli_common *common, const picture *p)
 {
     shape_error error;
@@ -211,11 +227,21 @@ static picture_outcome trace(const cli_common *common, const picture *p)
     shape_pathtrace_result result;
     shape_pathtrace_options options = pathtrace_options(common);
     options.opaque = p->opaque;
+    float *layer = shape_image_layer_pixels(p->image, "variance"), *variance = layer;
+    if (denoise && !layer) {
+        variance = malloc(3 * (size_t)p->image->width * (size_t)p->image->height * sizeof *variance);
+        if (!variance)
+            cli_fail("out of memory");
+    }
     cli_check(shape_tracer_create(p->volume, &tracer, &error), &error);
-    cli_check(shape_pathtrace_render(tracer, &p->view, &p->light, &options, p->image->pixels,
-                                     shape_image_layer_pixels(p->image, "variance"), &result, &error),
+    cli_check(shape_pathtrace_render(tracer, &p->view, &p->light, &options, p->image->pixels, variance,
+                                     &result, &error),
               &error);
     shape_tracer_destroy(tracer);
+    if (denoise)
+        smooth(p->image, variance);
+    if (!layer)
+        free(variance);
     picture_outcome outcome = {method_names[REFERENCE], result.samples,
                                isfinite(result.rel_error) ? result.rel_error : -1};
     return outcome;
@@ -261,6 +287,8 @@ static void check_method(void)
     int cells;
     if (method != MARCH && render_march_given())
         cli_wrong("rules, steps, --jitter, alpha and the light options belong to --method march");
+    if (method != REFERENCE && denoise)
+        cli_wrong("--denoise belongs to --method reference");
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
     if (method == MARCH)
