@@ -72,6 +72,8 @@ void march_one(int first, int end, float t1)
     }
 }
 
+// ONE_CLOUD: the scene has no more, so nothing is ever mixed.
+#ifndef ONE_CLOUD
 // Extinction and source of all clouds at s; c walks over the clouds in the list in rising order.
 void mixed_at(int first, int end, float s, bool crowded, out float extinction, out vec3 source)
 {
@@ -113,6 +115,7 @@ void march_mixed(int first, int end, float t1, bool crowded)
         reached = width < t1 - reached ? reached + width : t1;
     }
 }
+#endif
 
 // Joins the window's candidates into intervals and marches each.
 void march_window()
@@ -126,10 +129,14 @@ void march_window()
             alone = alone && candidate[next].w == candidate[first].w;
         }
         reached = max(candidate[first].x, reached);
+#ifdef ONE_CLOUD
+        march_one(first, next, min(end, window_end));
+#else
         if (alone)
             march_one(first, next, min(end, window_end));
         else
             march_mixed(first, next, min(end, window_end), false);
+#endif
     }
     if (going_on())
         reached = window_end;
@@ -142,7 +149,22 @@ void march_crowd()
     float until = reached + 1e-5 * abs(reached) + 1e-6;
     for (int i = 0; i < candidate_count; i++)
         until = max(until, candidate[i].y);
+#ifdef ONE_CLOUD
+    load_cloud(int(candidate[0].w), ray);
+    while (reached < until && going_on()) {
+        float width = min(step_length(reached), until - reached);
+        vec3 p = cloud_origin + (reached + width * random_start) * cloud_direction;
+        float density = density_at(p, cloud_u2(p, work));
+        steps += 1.0;
+        fetches += float(cloud_octaves);
+        work += cloud_octaves + 2;
+        if (density > 0.0)
+            add_segment(density * cloud_extinction, light_at(p), width);
+        reached = width < until - reached ? reached + width : until;
+    }
+#else
     march_mixed(0, candidate_count, until, true);
+#endif
 }
 
 void main()

@@ -170,7 +170,7 @@ struct shape_gl_renderer {
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
-    bool view_plain; /* the view program is for scenes without details, layers and metaballs */
+    int view_kind; /* which scenes the view program is for, see prepare_program */
     GLuint view_program, tonemap, density, empty_array;
     GLuint copy, heat, query;
     gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */

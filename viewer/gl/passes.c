@@ -120,15 +120,17 @@ static bool is_plain(const shape_volume *volume)
 /* The view program of the methods that have one for the whole picture, as fits the volume. */
 static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *error)
 {
-    bool plain = is_plain(renderer->volume);
+    static const char *const defines[] = {"", "#define FIELD_PLAIN\n", "#define ONE_CLOUD\n",
+                                          "#define FIELD_PLAIN\n#define ONE_CLOUD\n"};
+    int kind = is_plain(renderer->volume) + 2 * (renderer->volume->cloud_count == 1);
     if (renderer->options.method == SHAPE_GL_DEFAULT ||
-        (renderer->view_program && renderer->view_plain == plain))
+        (renderer->view_program && renderer->view_kind == kind))
         return SHAPE_OK;
     glDeleteProgram(renderer->view_program);
     renderer->view_program = 0;
-    renderer->view_plain = plain;
+    renderer->view_kind = kind;
     return gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert", view_shader(renderer),
-                             plain ? "#define FIELD_PLAIN\n" : "", &renderer->view_program, error);
+                             defines[kind], &renderer->view_program, error);
 }
 
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
