@@ -297,10 +297,31 @@ bool shape_set_bounds(const shape_set *set, shape_dvec3 *min, shape_dvec3 *max)
     return any;
 }
 
-static int compare_floats(const void *a, const void *b)
+/* The value that would stand at `place` if all were sorted (Hoare 1961); reorders them. */
+static float select_value(float *values, size_t count, size_t place)
 {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
+    size_t low = 0, high = count - 1;
+    while (low < high) {
+        float pivot = values[low + (high - low) / 2];
+        size_t i = low, j = high;
+        for (;;) {
+            while (values[i] < pivot)
+                i++;
+            while (pivot < values[j])
+                j--;
+            if (i >= j)
+                break;
+            float swap = values[i];
+            values[i++] = values[j];
+            values[j--] = swap;
+        }
+        /* values[low..j] <= pivot <= values[j+1..high]; where both met on the pivot itself, j is its place. */
+        if (place <= j)
+            high = j;
+        else
+            low = j + 1;
+    }
+    return values[place];
 }
 
 shape_status shape_cloud_choose_noise_scale(shape_cloud *cloud, const shape_primitives *list,
@@ -322,8 +343,7 @@ shape_status shape_cloud_choose_noise_scale(shape_cloud *cloud, const shape_prim
         const shape_ellipsoid *e = &list->ellipsoids[i];
         radii[list->sphere_count + i] = (e->a + e->b + e->c) / 3;
     }
-    qsort(radii, count, sizeof *radii, compare_floats);
-    cloud->field.noise_scale = radii[count / 2] / 5;
+    cloud->field.noise_scale = select_value(radii, count, count / 2) / 5;
     free(radii);
     return SHAPE_OK;
 }
