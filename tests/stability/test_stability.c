@@ -1,0 +1,134 @@
+/* Holds every row of the table of docs/stability.md; with --markdown, prints it. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "row.h"
+
+static const stability_part *const parts[] = {&stability_steps, &stability_rays, &stability_forms,
+                                              &stability_places, &stability_amounts};
+enum { PARTS = sizeof parts / sizeof *parts, ROWS_MOST = 256 };
+static const double energy_depth = 10;
+
+static bool in_bounds(const stability_row *row, double value)
+{
+    return value >= row->low && value <= row->high; /* not a NaN */
+}
+
+static void plain_fails_and_ours_holds(void **state)
+{
+    const stability_row *row = *state;
+    double plain, ours;
+    row->measure(row->x, &plain, &ours);
+    if (in_bounds(row, plain))
+        fail_msg("%s: the plain way holds (%g, bounds %.9g to %.9g); the row is not true", row->where, plain,
+                 row->low, row->high);
+    if (!in_bounds(row, ours))
+        fail_msg("%s: %.9g, bounds %.9g to %.9g", row->where, ours, row->low, row->high);
+}
+
+static void energy_is_as_claimed(void **state)
+{
+    const stability_energy *energy = *state;
+    double flux, furnace;
+    stability_energy_measure(energy, energy_depth, &flux, &furnace);
+    assert_true(isfinite(flux) && flux >= 0);
+    if (!stability_energy_holds(energy, flux, furnace))
+        fail_msg("%s: flux %.4f, furnace %.4f", energy->light, flux, furnace);
+    /* A light that makes no claim has a reason: it is off by more than those that do. */
+    if (!energy->claims && fabs(flux - 1) <= 0.05 && (isnan(furnace) || fabs(furnace - 1) <= 0.05))
+        fail_msg("%s conserves energy here and could claim it: flux %.4f, furnace %.4f", energy->light, flux,
+                 furnace);
+}
+
+/* --- the page --- */
+
+static void print_number(double value)
+{
+    if (isnan(value))
+        printf("NaN");
+    else if (isinf(value))
+        printf(value > 0 ? "infinity" : "-infinity");
+    else if (fabs(value - 1) < 1e-3 && value != 1)
+        printf(fabs(value - 1) < 5e-8 ? "1" : "1 %c %.2g", value > 1 ? '+' : '-', fabs(value - 1));
+    else
+        printf("%.3g", value);
+}
+
+static void print_bound(const stability_row *row)
+{
+    if (row->low == row->high) {
+        print_number(row->low);
+        return;
+    }
+    print_number(row->low);
+    printf(" to ");
+    print_number(row->high);
+}
+
+static void print_part(const stability_part *part)
+{
+    printf("\n## %s\n\n| where | the plain way | here | measured | plain | here | bounds "
+           "|\n|---|---|---|---|---|---|---|\n",
+           part->title);
+    for (size_t i = 0; i < part->count; i++) {
+        const stability_row *row = &part->rows[i];
+        double plain, ours;
+        row->measure(row->x, &plain, &ours);
+        printf("| %s | %s | %s | %s | ", row->where, row->plain, row->ours, row->quantity);
+        print_number(plain);
+        printf(" | ");
+        print_number(ours);
+        printf(" | ");
+        print_bound(row);
+        printf(" |\n");
+    }
+}
+
+static void print_energy(void)
+{
+    printf("\n## Energy\n\nA white ball with isotropic scattering, optical diameter %g. Flux: what leaves it "
+           "of what it "
+           "scatters of the sun's\nlight, 1 in truth. Furnace: the mean radiance seen through it under a sky "
+           "of 1, 1 in "
+           "truth. Those that claim to\nconserve energy keep both within 5 %%; the others do not claim it, "
+           "and none of them "
+           "does.\n\n| light | claims it | flux | furnace |\n|---|---|---|---|\n",
+           energy_depth);
+    for (int i = 0; i < STABILITY_ENERGIES; i++) {
+        const stability_energy *energy = &stability_energies[i];
+        double flux, furnace;
+        stability_energy_measure(energy, energy_depth, &flux, &furnace);
+        printf("| %s | %s | %.3f | ", energy->light, energy->claims ? "yes" : "no", flux);
+        printf(isnan(furnace) ? "no sky |\n" : "%.3f |\n", furnace);
+    }
+}
+
+static int print_page(void)
+{
+    for (int i = 0; i < PARTS; i++)
+        print_part(parts[i]);
+    print_energy();
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1 && !strcmp(argv[1], "--markdown"))
+        return print_page();
+    static struct CMUnitTest tests[ROWS_MOST];
+    size_t count = 0;
+    for (int k = 0; k < PARTS; k++)
+        for (size_t i = 0; i < parts[k]->count; i++) {
+            const stability_row *row = &parts[k]->rows[i];
+            tests[count++] =
+                (struct CMUnitTest){row->where, plain_fails_and_ours_holds, NULL, NULL, (void *)row};
+        }
+    for (int i = 0; i < STABILITY_ENERGIES; i++)
+        tests[count++] = (struct CMUnitTest){stability_energies[i].light, energy_is_as_claimed, NULL, NULL,
+                                             (void *)&stability_energies[i]};
+    return _cmocka_run_group_tests("stability", tests, count, NULL, NULL);
+}
