@@ -104,10 +104,10 @@ static void sunk_sun(double height, double *plain, double *ours)
     *ours = (double)rgb[1];
 }
 
-#define DRAWN "cosine drawn at 0.75; the truth is 0.5 and 0.3 g"
+#define DRAWN "cosine drawn for the number 0.75, 0.5 in truth"
 
 static const stability_row rows[] = {
-    {"Rodrigues at 0 degrees (Jiménez Eq. 27)", "divides by |x cross v| = 0",
+    {"Rodrigues at 0 degrees (Jiménez Eq. 27)", "divides by the length of x cross v, which is 0",
      "half-angle quaternion, no division by a sine", "distance of the turned axis from where it should be", 0,
      1e-6, rotation, 1},
     {"Rodrigues at 180 degrees", "the same", "half a turn about any axis across",
@@ -117,7 +117,8 @@ static const stability_row rows[] = {
     {"kappa 1, noise 0, at a centre (Jiménez Eq. 2)", "exp(-0/0)", "the denominator is held above 1e-6",
      "gamma", 0, 1, threshold, 1},
     {"Henyey-Greenstein, g = 0.9999, straight on", "1 + g^2 - 2 g c cancels in single precision",
-     "(1 - |g|)^2 + 2 |g| (1 - |c|)", "peak over its true value", 0.999, 1.001, phase_peak, 0.9999},
+     "with h = abs(g): (1 - h)^2 + 2 h (1 - abs(c))", "peak over its true value", 0.999, 1.001, phase_peak,
+     0.9999},
     {"the same, g = -0.9999, straight back", "the same", "the same", "peak over its true value", 0.999, 1.001,
      phase_peak, -0.9999},
     {"drawing from Henyey-Greenstein, g = 0", "divides by g", "an inverse without that division", DRAWN,

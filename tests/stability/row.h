@@ -34,8 +34,8 @@ extern const stability_part stability_steps, stability_rays, stability_forms, st
 /* The energy table: which light sends back no more than it gets, and whether it claims so. */
 typedef struct stability_energy {
     const char *light;
-    bool claims;
-    int march; /* a shape_march_light; -1: the reference */
+    double flux, furnace; /* how near to 1 it claims to be; 0: it claims nothing */
+    int march;            /* a shape_march_light; -1: the reference */
 } stability_energy;
 
 enum { STABILITY_ENERGIES = 9 };
@@ -43,7 +43,7 @@ extern const stability_energy stability_energies[STABILITY_ENERGIES];
 /* Of the sun's light that a white ball of optical diameter `depth` scatters, the share that leaves it; and the radiance
  * seen through it in a white furnace (NAN for lights without sky). */
 void stability_energy_measure(const stability_energy *energy, double depth, double *flux, double *furnace);
-/* Whether the two are as claimed: for lights that claim it, flux within 5 % and furnace within 5 %. */
+/* Whether both are as near to 1 as claimed; false for lights that claim nothing. */
 bool stability_energy_holds(const stability_energy *energy, double flux, double furnace);
 
 static inline void stability_must(shape_status status, const shape_error *error)
