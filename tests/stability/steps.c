@@ -166,6 +166,25 @@ static void occluder(double x, double *plain, double *ours)
     sample_end(&scene);
 }
 
+/* Light at a place in the shadow of a thing, with `--shade 0`: shade times the depth to the sun, which is infinite. */
+static void shaded_shadow(double x, double *plain, double *ours)
+{
+    sample_scene scene = stability_ball(2, 0.5, 1);
+    shape_opaque *opaque = square_at(4);
+    shape_light light = shape_light_defaults();
+    shape_march_options options = shape_march_defaults();
+    volatile float depth = INFINITY;
+    light.sky = SHAPE_SKY_NONE;
+    light.sun = shape_dvec3_make(0, 0, 1);
+    options.light = SHAPE_MARCH_SINGLE;
+    options.opaque = opaque;
+    options.shade = x;
+    *plain = exp(-x * (double)depth);
+    *ours = stability_look(&scene, &light, &options, shape_dvec3_make(0, 9, 0), shape_dvec3_make(0, -1, 0));
+    shape_opaque_destroy(opaque);
+    sample_end(&scene);
+}
+
 /* --- growing steps and long ways --- */
 
 /* z_(k+1) = (1 + share) z_k from the eye itself, a million times. */
@@ -238,6 +257,8 @@ static const stability_row rows[] = {
      "`--step-end adapt` (Páleník Eq. 4.1, 4.2): its shape shows, as a negative",
      "`--step-end cut` (default): steps stay where they were", "radiance over that without the thing",
      1 - 1e-6, 1 + 1e-6, occluder, 0},
+    {"shadow of an opaque thing, `--shade 0`", "0 times an infinite depth", "what is opaque stays so",
+     "light in the shadow", 0, 0, shaded_shadow, 0},
     {"exponential steps from an eye inside the cloud", "z (1 + h) from z = 0 never moves",
      "one fixed step, then growing ones", "optical depth found, of 1", 0.999, 1.001, steps_from_the_eye, 0},
     {"t += 0.1 m, 10,000 km away", "stands still in single precision",
