@@ -66,11 +66,15 @@ float density_fbm(const shape_volume_cloud *cloud, shape_vec3 p)
     return n;
 }
 
+float density_gamma(float kappa, float n, float u)
+{
+    return expf(-u / fmaxf((1 - kappa) + 2 * kappa * n, 1e-6f));
+}
+
 float density_spheroid(const shape_volume_cloud *cloud, shape_vec3 p, float u)
 {
-    float n = density_fbm(cloud, p), kappa = cloud->field.kappa;
-    float gamma = expf(-u / fmaxf((1 - kappa) + 2 * kappa * n, 1e-6f));
-    return n < gamma ? n : 0;
+    float n = density_fbm(cloud, p);
+    return n < density_gamma(cloud->field.kappa, n, u) ? n : 0;
 }
 
 float density_metaball_sum(const shape_primitives *list, shape_vec3 p)

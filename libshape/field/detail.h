@@ -8,6 +8,8 @@
 
 /* The field's own fBm noise. */
 float density_fbm(const shape_volume_cloud *cloud, shape_vec3 p);
+/* Jiménez 2018 Eq. 2, for noise n at distance u; 0 to 1, also where n is 0 and kappa 1. */
+float density_gamma(float kappa, float n, float u);
 /* Jiménez 2018 Eq. 2 and Algorithm 1, at distance u. */
 float density_spheroid(const shape_volume_cloud *cloud, shape_vec3 p, float u);
 /* Eq. 20: the balls' field at p; Eq. 21: the density there. */

@@ -62,6 +62,8 @@ bool march_needs_depth(shape_march_light light);
 /* The optical depth from a world point to the sun, infinite behind something opaque. cloud and p: the cloud that asks,
  * and the point in its frame; NULL: none, and it is marched. */
 double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *cloud, shape_vec3 p);
+/* A depth as `shade` thins it; what is opaque stays so, where 0 times infinity would be NaN. */
+double march_sun_shaded(double shade, double depth);
 /* The share of the sun's light that comes there by Harris' recurrence. */
 double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo);
 /* Value `value` of a grid at a point of its cloud's frame, between cell centres; constant beyond the outermost. */

@@ -28,6 +28,8 @@ static double octaves(const shape_medium *medium, float cos_sun, double depth)
 /* How much of the sun's light is left at that depth, by the law. */
 static double attenuation(const shape_march_options *options, double cos_sun, double depth)
 {
+    if (isinf(depth)) /* behind something opaque, where k = 0 would make NaN of it */
+        return 0;
     switch (options->light) {
     case SHAPE_MARCH_POWDER:
         return exp(-depth) * -expm1(-options->powder * depth);
@@ -73,7 +75,7 @@ static double sun_source(march_ray *ray, const lit_point *at, double cos_sun, do
             received = 0;
         return albedo * received * (1 + phase(m, at, cos_sun)) / pi;
     }
-    *depth = m->options.shade * march_sun_depth(ray, at->world, at->cloud, at->p);
+    *depth = march_sun_shaded(m->options.shade, march_sun_depth(ray, at->world, at->cloud, at->p));
     if (m->options.light == SHAPE_MARCH_OCTAVES)
         return albedo * octaves(medium, (float)cos_sun, *depth);
     return albedo * phase(m, at, cos_sun) * attenuation(&m->options, cos_sun, *depth);

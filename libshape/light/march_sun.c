@@ -90,6 +90,11 @@ double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *clo
     return depth;
 }
 
+double march_sun_shaded(double shade, double depth)
+{
+    return isinf(depth) ? depth : shade * depth;
+}
+
 /* Seen from the sun, I_n = exp(-eta_n) (I_{n-1} + g_{n-1}) with g = forward eta I (Páleník 2016 Eq. 3.12, whose printed
  * form has exp(+eta_n) and lost exp(-eta_n) in its last term), so each step but the last, which the point stands in,
  * brings a factor (1 + forward eta). */

@@ -14,7 +14,7 @@ static double beam(march_ray *ray, shape_dvec3 point)
     if (m->options.light == SHAPE_MARCH_HARRIS)
         return march_sun_harris(ray, point, 1);
     double shade = march_needs_depth(m->options.light) ? m->options.shade : 1;
-    return exp(-shade * march_sun_depth(ray, point, NULL, nowhere));
+    return exp(-march_sun_shaded(shade, march_sun_depth(ray, point, NULL, nowhere)));
 }
 
 static bool sky_lights(shape_march_light light)
