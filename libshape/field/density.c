@@ -5,6 +5,7 @@
 
 #include "field/detail.h"
 #include "shape/grid.h"
+#include "shape/random.h"
 #include "shape/volume.h"
 
 /* u^2 below which a metaball's pole is cut off: a thousandth of the radius. */
@@ -69,7 +70,8 @@ float density_fbm(const shape_volume_cloud *cloud, shape_vec3 p)
 float density_spheroid(const shape_volume_cloud *cloud, shape_vec3 p, float u)
 {
     float n = density_fbm(cloud, p), kappa = cloud->field.kappa;
-    float gamma = expf(-u / fmaxf((1 - kappa) + 2 * kappa * n, 1e-6f));
+    float power = -u / fmaxf((1 - kappa) + 2 * kappa * n, 1e-6f);
+    float gamma = cloud->portable ? (float)shape_exp((double)power) : expf(power);
     return n < gamma ? n : 0;
 }
 
