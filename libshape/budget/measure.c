@@ -9,7 +9,10 @@
 #include "shape/random.h"
 #include "shape/volume.h"
 
-enum { SIDES = 6, SUNS = 3, OCTAVES = 3, PICTURES = 1 + SUNS };
+/* What reaches every cell, where each of the octaves' light is 1 outside. */
+static const double sky = 0.5;
+
+enum { SUNS = 3, OCTAVES = 3, PICTURES = 1 + SUNS };
 
 /* A list as a volume of its own. The set does not own the list; end() lets go of it. */
 typedef struct rig {
@@ -158,11 +161,11 @@ static void shine(const columns *c, double depth, const float *density, float *l
         double passed = 0;
         for (size_t i = c->length; i-- > 0;) {
             size_t cell = begin + i * c->stride;
-            double own = depth * (double)density[cell], share = 1, sum = 0;
+            double own = depth * (double)density[cell], share = 1, sum = sky;
             if (!(density[cell] > 0))
                 continue;
-            for (int octave = 0; octave < OCTAVES; octave++, share *= 0.5)
-                sum += share * shape_exp(-share * (passed + own / 2));
+            for (int octave = 0; octave < OCTAVES; octave++, share *= 0.25)
+                sum += shape_exp(-share * (passed + own / 2));
             light[cell] = (float)sum;
             passed += own;
         }
@@ -237,23 +240,29 @@ shape_status budget_pictures_draw(const budget_stage *stage, const shape_primiti
     return status;
 }
 
+/* The RMS difference of so many values, relative to their RMS. */
+static double relative_change(const double *from, const double *to, size_t count)
+{
+    double differences = 0, squares = 0;
+    for (size_t i = 0; i < count; i++) {
+        double difference = to[i] - from[i];
+        differences += difference * difference;
+        squares += from[i] * from[i];
+    }
+    return differences > 0 ? sqrt(differences / squares) : 0;
+}
+
 double budget_pictures_change(const budget_stage *stage, const double *from, const double *to)
 {
     double largest = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        size_t count = columns_along(stage->size, axis).count;
-        for (int picture = 0; picture < 2 * PICTURES && stage->values; picture++) {
-            double differences = 0, squares = 0;
-            for (size_t i = 0; i < count; i++) {
-                double difference = to[i] - from[i];
-                differences += difference * difference;
-                squares += from[i] * from[i];
-            }
-            double change = differences > 0 ? sqrt(differences / squares) : 0;
-            largest = change > largest ? change : largest;
-            from += count;
-            to += count;
-        }
+    for (int side = 0; side < 6 && stage->values; side++) {
+        size_t count = columns_along(stage->size, side / 2).count;
+        double cover = relative_change(from, to, count);
+        double radiance = relative_change(from + count, to + count, SUNS * count);
+        double change = cover > radiance ? cover : radiance;
+        largest = change > largest ? change : largest;
+        from += PICTURES * count;
+        to += PICTURES * count;
     }
     return largest;
 }

@@ -161,6 +161,6 @@ double budget_profile(shape_model model, double u2)
 {
     if (model == SHAPE_MODEL_UNIFORM)
         return u2 <= 1 ? 1 : 0;
-    double left = (1 - u2) / 0.75; /* a spheroid is full up to half its radius */
+    double left = (1 - u2) / 0.3; /* a spheroid is full, but for the outer sixth of its radius */
     return left < 0 ? 0 : left > 1 ? 1 : left;
 }

@@ -34,8 +34,9 @@ shape_status shape_primitives_simplify(shape_primitives *list, const shape_cloud
                                        shape_error *error);
 
 /* The measure by itself: how much the pictures of `other` differ from those of `list`, both with the field, medium and
- * frame of `cloud`. Of 24 pictures (six sides; the cover, and the radiance under a sun from three sides) the largest
- * root mean square of the difference, divided by the picture's own root mean square. Infinite where `list` shows nothing
+ * frame of `cloud`. From each of six sides, the root mean square of the difference divided by the pictures' own root mean
+ * square: of the cover (1 - transmittance), and of the radiance under suns from three sides, before black. The largest
+ * of these twelve numbers. Infinite where `list` shows nothing
  * and `other` does. Errors: memory, a resolution outside 8 to 256, a grid's list. */
 shape_status shape_simplify_error(const shape_primitives *list, const shape_primitives *other,
                                   const shape_cloud *cloud, int resolution, double *change,
