@@ -4,7 +4,7 @@
 
 #include "shape/set.h"
 
-enum { BUDGET_SAMPLES = 48 }; /* points in which a shape is compared */
+enum { BUDGET_SAMPLES = 96 }; /* points in which a shape is compared */
 
 /* A primitive as it is merged: { centre + axes v : |v| <= 1 }, axes perpendicular, and their inverse rows. */
 typedef struct budget_shape {
