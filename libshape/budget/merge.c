@@ -60,6 +60,8 @@ static double original_u2(const work *w, shape_dvec3 point, uint32_t *owner)
             least = u2;
             *owner = (uint32_t)number;
         }
+        if (budget_profile(w->model, least) >= 1)
+            break; /* full: who else covers the point does not matter, and the same one is found from everywhere */
     }
     if (!(least <= 1))
         *owner = UINT32_MAX;

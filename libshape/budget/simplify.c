@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "budget/distinct.h"
 #include "budget/measure.h"
 #include "budget/merge.h"
 
@@ -33,7 +34,8 @@ shape_status shape_simplify_check(const shape_simplify_options *options, shape_e
 
 /* One list's simplification. */
 typedef struct job {
-    const shape_primitives *list;
+    const shape_primitives *list; /* as it was */
+    shape_primitives distinct;    /* what is merged: the same, but for duplicates where these show nothing */
     budget_stage stage;
     budget_merges merges;
     double *original, *changed; /* pictures */
@@ -49,7 +51,7 @@ static void free_arrays(shape_primitives *list)
 static shape_status change_at(job *j, size_t wanted, double *change, shape_error *error)
 {
     shape_primitives cut = {0};
-    shape_status status = budget_merges_cut(&j->merges, j->list, wanted, &cut, error);
+    shape_status status = budget_merges_cut(&j->merges, &j->distinct, wanted, &cut, error);
     if (!status)
         status = budget_pictures_draw(&j->stage, &cut, j->changed, error);
     if (!status)
@@ -83,7 +85,7 @@ static shape_status bisect(job *j, double allowed, size_t *wanted, double *chang
 static shape_status run(job *j, const shape_cloud *cloud, const shape_simplify_options *options,
                         size_t *wanted, double *change, shape_error *error)
 {
-    shape_status status = budget_merges_make(&j->merges, j->list, cloud->field.model, error);
+    shape_status status = budget_merges_make(&j->merges, &j->distinct, cloud->field.model, error);
     if (!status)
         status = budget_stage_set(&j->stage, j->list, cloud, options->resolution, error);
     if (status)
@@ -103,8 +105,28 @@ static shape_status run(job *j, const shape_cloud *cloud, const shape_simplify_o
     return status;
 }
 
+/* A duplicate shows nothing where the nearest primitive alone makes the density. */
+static shape_status take_list(job *j, const shape_cloud *cloud, shape_error *error)
+{
+    bool nearest = cloud->field.model != SHAPE_MODEL_METABALL && !(cloud->field.detail.smoothness > 0);
+    if (nearest)
+        return budget_distinct_copy(j->list, &j->distinct, error);
+    size_t spheres = j->list->sphere_count, ellipsoids = j->list->ellipsoid_count;
+    shape_status status = shape_primitives_reserve(&j->distinct, spheres, ellipsoids, error);
+    if (status)
+        return status;
+    if (spheres)
+        memcpy(j->distinct.spheres, j->list->spheres, spheres * sizeof *j->list->spheres);
+    if (ellipsoids)
+        memcpy(j->distinct.ellipsoids, j->list->ellipsoids, ellipsoids * sizeof *j->list->ellipsoids);
+    j->distinct.sphere_count = spheres;
+    j->distinct.ellipsoid_count = ellipsoids;
+    return SHAPE_OK;
+}
+
 static void job_end(job *j)
 {
+    free_arrays(&j->distinct);
     budget_merges_free(&j->merges);
     free(j->original);
     free(j->changed);
@@ -126,9 +148,11 @@ shape_status shape_primitives_simplify(shape_primitives *list, const shape_cloud
     if (!status && count > 1 && needed && is_heap(cloud, list)) {
         job j = {.list = list};
         shape_primitives cut = {0};
-        status = run(&j, cloud, options, &wanted, &change, error);
+        status = take_list(&j, cloud, error);
+        if (!status)
+            status = run(&j, cloud, options, &wanted, &change, error);
         if (!status && wanted < count)
-            status = budget_merges_cut(&j.merges, list, wanted, &cut, error);
+            status = budget_merges_cut(&j.merges, &j.distinct, wanted, &cut, error);
         job_end(&j);
         if (!status && wanted < count) {
             free_arrays(list);
