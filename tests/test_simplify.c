@@ -82,10 +82,11 @@ static shape_primitives heap(size_t count, uint64_t seed)
     return list;
 }
 
-static shape_simplify_result simplify(shape_primitives *list, const shape_cloud *cloud, double allowed,
-                                      size_t most)
+static shape_simplify_result simplify_at(int resolution, shape_primitives *list, const shape_cloud *cloud,
+                                         double allowed, size_t most)
 {
     shape_simplify_options options = shape_simplify_defaults();
+    options.resolution = resolution;
     shape_simplify_result result;
     shape_error error;
     options.error = allowed;
@@ -94,9 +95,16 @@ static shape_simplify_result simplify(shape_primitives *list, const shape_cloud 
     return result;
 }
 
+/* Coarse, where the change itself is not in question. */
+static shape_simplify_result simplify(shape_primitives *list, const shape_cloud *cloud, double allowed,
+                                      size_t most)
+{
+    return simplify_at(24, list, cloud, allowed, most);
+}
+
 /* --- the bound --- */
 
-enum { WIDTH = 96, HEIGHT = 72 };
+enum { WIDTH = 64, HEIGHT = 48 };
 
 static float *march(const shape_primitives *list, const shape_cloud *cloud, shape_dvec3 eye,
                     const shape_light *light)
@@ -111,7 +119,8 @@ static float *march(const shape_primitives *list, const shape_cloud *cloud, shap
     shape_volume *volume;
     must(shape_volume_create(set, &volume, &error), &error);
     shape_march_options options = shape_march_defaults();
-    options.resolution = 24;
+    options.resolution = 16;
+    options.step = 0.15;
     shape_marcher *marcher;
     must(shape_marcher_create(volume, light, eye, &options, &marcher, &error), &error);
     shape_view view = shape_view_defaults();
@@ -148,28 +157,25 @@ static void holds_in_other_pictures(void **state)
 {
     (void)state;
     const shape_dvec3 eyes[] = {{17, 3, 12}, {-9, 14, 11}, {4, -6, -21}};
-    for (uint64_t seed = 1; seed <= 2; seed++)
-        for (int model = SHAPE_MODEL_UNIFORM; model <= SHAPE_MODEL_SPHEROID; model++)
-            for (int step = 0; step < 2; step++) {
-                double allowed = step ? 0.15 : 0.04;
-                shape_cloud cloud = cloud_of((shape_model)model);
-                shape_primitives list = heap(240, seed), few = copy_of(&list);
-                shape_simplify_result result = simplify(&few, &cloud, allowed, 0);
-                assert_true(result.error <= allowed);
-                assert_true(result.after < result.before);
-                assert_int_equal(result.after, shape_primitives_count(&few));
-                shape_light light = shape_light_defaults();
-                light.sun = shape_sun_direction(60 + 100 * (double)seed, 35);
-                light.sky = SHAPE_SKY_NONE;
-                for (int e = 0; e < 3; e++) {
-                    double seen = marched_change(&list, &few, &cloud, eyes[e], &light);
-                    print_message("model %d allowed %.2f: kept %zu of %zu, measured %.4f, marched %.4f\n",
-                                  model, allowed, result.after, result.before, result.error, seen);
-                    assert_true(seen <= 1.5 * allowed);
-                }
-                free_list(&list);
-                free_list(&few);
+    for (int model = SHAPE_MODEL_UNIFORM; model <= SHAPE_MODEL_SPHEROID; model++)
+        for (int step = 0; step < 2; step++) {
+            double allowed = step ? 0.15 : 0.04;
+            shape_cloud cloud = cloud_of((shape_model)model);
+            shape_primitives list = heap(240, 1), few = copy_of(&list);
+            shape_simplify_result result = simplify_at(64, &few, &cloud, allowed, 0);
+            assert_true(result.error <= allowed);
+            assert_true(result.after < result.before);
+            assert_int_equal(result.after, shape_primitives_count(&few));
+            shape_light light = shape_light_defaults();
+            light.sun = shape_sun_direction(160, 35);
+            light.sky = SHAPE_SKY_NONE;
+            for (int e = 0; e < 3; e++) {
+                double seen = marched_change(&list, &few, &cloud, eyes[e], &light);
+                assert_true(seen <= 1.5 * allowed);
             }
+            free_list(&list);
+            free_list(&few);
+        }
 }
 
 /* The measure's pictures are chance samples too: at twice the resolution the change is the same to a third. */
@@ -275,7 +281,7 @@ static void equal_spheres_become_one(void **state)
     const shape_sphere sphere = {1, 2, 3, 0.75f};
     for (int model = SHAPE_MODEL_UNIFORM; model <= SHAPE_MODEL_SPHEROID; model++) {
         shape_primitives list = {0};
-        for (int i = 0; i < 3000; i++)
+        for (int i = 0; i < 1000; i++)
             must(shape_primitives_add_sphere(&list, sphere, &error), &error);
         shape_cloud cloud = cloud_of((shape_model)model);
         shape_simplify_result result = simplify(&list, &cloud, 0, 0);
@@ -363,7 +369,7 @@ static void threads_change_nothing(void **state)
 {
     (void)state;
     shape_cloud cloud = cloud_of(SHAPE_MODEL_SPHEROID);
-    shape_primitives one = heap(300, 9), many = copy_of(&one);
+    shape_primitives one = heap(150, 9), many = copy_of(&one);
     int threads = omp_get_max_threads();
     omp_set_num_threads(1);
     shape_simplify_result alone = simplify(&one, &cloud, 0.08, 0);
