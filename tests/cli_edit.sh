@@ -100,6 +100,28 @@ grep -q 'pruning removed' said || fail "says: $(cat said)"
 "$bin/neph-edit" same.neph --prune -o m.neph 2> said
 grep -q 'pruning removed 499' said || fail "says: $(cat said)"
 
+# Simplifying: the number asked for, no more than the error allowed, one cloud or all, the frame's place without meaning.
+"$bin/neph-edit" -q a.neph --grow --grow-levels 1 -o grown.neph
+"$bin/neph-edit" grown.neph --primitives 20 -o m.neph 2> said
+grep -q 'simplifying kept 20 of [0-9]* primitives; pictures change by 0\.' said || fail "says: $(cat said)"
+expect m.neph "c[0]['primitives'] == 20 and '--primitives 20' in c[0]['made_by']"
+"$bin/neph-edit" grown.neph --simplify 0.05 -o fine.neph 2> said
+python3 - "$(sed -n 's/.*change by //p' said)" <<'END' || fail "says: $(cat said)"
+import sys
+assert 0 <= float(sys.argv[1]) <= 0.05
+END
+"$bin/neph-edit" -q grown.neph --simplify 0.4 -o coarse.neph
+[ "$(primitives coarse.neph | wc -l)" -lt "$(primitives fine.neph | wc -l)" ] || fail "a larger error kept as much"
+"$bin/neph-edit" -q grown.neph --translate 1e6,0,0 --simplify 0.05 -o far.neph
+primitives fine.neph > fine.csv
+primitives far.neph | cmp -s - fine.csv || fail "the place changed the simplification"
+"$bin/neph-edit" -q a.neph a.neph --cloud cumulus-2 --primitives 4 -o m.neph
+expect m.neph "c[1]['primitives'] == 4 and c[0]['primitives'] > 4"
+"$bin/neph-edit" -q same.neph --simplify 0 -o m.neph
+expect m.neph "c[0]['primitives'] < 500"
+refuse 2 'simplify' "$bin/neph-edit" a.neph --simplify 1.5
+refuse 2 'primitives' "$bin/neph-edit" a.neph --primitives 0
+
 # Mistakes.
 refuse 2 'FILE' "$bin/neph-edit"
 refuse 1 'missing.neph' "$bin/neph-edit" missing.neph

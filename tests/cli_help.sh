@@ -15,7 +15,7 @@ fail()
 }
 
 # Promised options that are still to be built. An entry that has come to be is a mistake: it belongs out of here.
-not_yet="neph-edit:simplify neph-edit:primitives"
+not_yet=""
 
 save="save-scene"
 common="output seed quiet generate help version"

@@ -37,7 +37,7 @@ build() {
     mkdir -p "$1"
     flags="-std=c17 $3 -w -ffp-contract=off -D_XOPEN_SOURCE=700 -DNEPHELE_VERSION=\"$version\""
     flags="$flags -I$source/libshape/include -I$source/libshape -I$source/tools"
-    for room in base primitive generate field file tools; do
+    for room in base primitive generate field budget file tools; do
         mkdir -p "$1/$room"
         case $room in
         file) files="neph_*.c scene*.c atomic.c" ;;
@@ -114,6 +114,7 @@ make() {
                 --translate 1,2,3 -o "$2/moved.neph"
             "$1/neph-edit" -q "$2/castellanus.neph" --grow --clip --hollow --thin 150 --prune --seed 4 \
                 -o "$2/reworked.neph"
+            "$1/neph-edit" -q "$2/castellanus.neph" --thin 400 --simplify 0.1 -o "$2/simplified.neph"
             ;;
         esac
     done

@@ -8,15 +8,18 @@
 #include "shape/gaussian.h"
 #include "shape/prune.h"
 #include "shape/refine.h"
+#include "shape/simplify.h"
 #include "shape/transform.h"
 
 static struct {
     double translate[3], rotate[3], scale[3], pivot[3];
     bool keep_depth, hollow, prune, grow, clip;
-    int64_t thin, grow_levels, grow_count;
+    int64_t thin, grow_levels, grow_count, primitives;
+    double simplify;
     double grow_ratio[2], clip_height, clip_normal[3], clip_noise, clip_size;
     const char *cloud, *mirror;
     bool translate_given, rotate_given, scale_given, pivot_given, thin_given, clip_height_given;
+    bool simplify_given, primitives_given;
     bool grow_levels_given, grow_count_given, grow_ratio_given, clip_normal_given, clip_noise_given,
         clip_size_given;
 } values = {.scale = {1, 1, 1},
@@ -68,6 +71,11 @@ static const cli_option rework_options[] = {
      "keep N primitives a cloud, chosen at random [all]", &values.thin_given, false},
     {"prune", 0, CLI_FLAG, &values.prune, 0, 0, NULL, "leave out primitives that lie inside others", NULL,
      false},
+    {"simplify", 0, CLI_NUMBER, &values.simplify, 0, 1, "E",
+     "merge and drop primitives while pictures change by at most E, such as 0.03 [not]",
+     &values.simplify_given, false},
+    {"primitives", 0, CLI_INTEGER, &values.primitives, 1, 1000000000, "N",
+     "the same down to N primitives a cloud, whatever the change [all]", &values.primitives_given, false},
     {0}};
 
 /* The medium's options keep what a cloud has, so their help must not promise a default. */
@@ -87,13 +95,14 @@ static const cli_program program = {
              "Whatever the "
              "order of the\n"
              "options, the order of work is: scale, mirror, rotate, translate; grow; clip; hollow; thin; "
-             "prune; medium.\n"
+             "prune; medium; simplify.\n"
              "All of the first but unequal scaling acts on a cloud's frame and carries its noise along. "
              "Extinction is per\n"
              "metre of the world: a cloud twice as large is twice as deep, unless --keep-depth is given.",
     .examples = "  neph-edit a.neph b.neph -o both.neph\n"
                 "  neph-gauss | neph-edit - --scale 2,1,1 --rotate 0,30,0 -o long.neph\n"
-                "  neph-edit cumulus.neph --grow --clip --clip-height -1.5 -o detailed.neph\n",
+                "  neph-edit cumulus.neph --grow --clip --clip-height -1.5 -o detailed.neph\n"
+                "  neph-edit detailed.neph --simplify 0.03 -o far.neph\n",
     .min_arguments = 1,
     .max_arguments = 10000,
     .groups = groups};
@@ -305,6 +314,70 @@ static void rework(shape_set *set, const bool *selected, uint64_t seed)
         cli_say("note: the field of metaballs is a sum over all of them, so pruning made it thinner");
 }
 
+/* All that a simplification depends on, besides the list. Made zero first, since keys are compared byte by byte. */
+static shape_status describe_look(const shape_set *set, size_t cloud, void *key, void *context,
+                                  shape_error *error)
+{
+    (void)context, (void)error;
+    const shape_cloud *from = &set->clouds[cloud];
+    shape_cloud *look = key;
+    memset(look, 0, sizeof *look);
+    look->field.model = from->field.model;
+    look->field.kappa = from->field.kappa;
+    look->field.octaves = from->field.octaves;
+    look->field.noise_scale = from->field.noise_scale;
+    look->field.edge = from->field.edge;
+    look->field.seed = from->field.seed;
+    look->field.detail = from->field.detail;
+    look->medium.extinction = from->medium.extinction;
+    for (int k = 0; k < 3; k++) {
+        shape_dvec3 axis = {from->frame.m[0][k], from->frame.m[1][k], from->frame.m[2][k]};
+        look->frame.m[k][k] = shape_dvec3_length(axis);
+    }
+    return SHAPE_OK;
+}
+
+typedef struct simplified {
+    size_t before, after;
+    double change;
+} simplified;
+
+static shape_status simplify_list(shape_primitives *list, uint32_t number, const void *key, void *context,
+                                  shape_error *error)
+{
+    (void)number;
+    simplified *sum = context;
+    shape_cloud look;
+    memcpy(&look, key, sizeof look);
+    shape_simplify_options options = shape_simplify_defaults();
+    if (values.simplify_given)
+        options.error = values.simplify;
+    options.most = values.primitives_given ? (size_t)values.primitives : 0;
+    shape_simplify_result result;
+    shape_status status = shape_primitives_simplify(list, &look, &options, &result, error);
+    if (status)
+        return status;
+    sum->before += result.before;
+    sum->after += result.after;
+    sum->change = result.error > sum->change ? result.error : sum->change;
+    return SHAPE_OK;
+}
+
+static void simplify(shape_set *set, const bool *selected)
+{
+    if (!values.simplify_given && !values.primitives_given)
+        return;
+    simplified sum = {0};
+    shape_error error;
+    shape_list_change change = {sizeof(shape_cloud), describe_look, simplify_list, &sum};
+    cli_check(shape_set_change_lists(set, selected, &change, &error), &error);
+    cli_say("simplifying kept %zu of %zu primitives; pictures change by %.2g%s", sum.after, sum.before,
+            sum.change,
+            values.simplify_given && sum.change > values.simplify
+                ? ", more than --simplify allows, for --primitives"
+                : "");
+}
+
 /* This program's line, and behind it, as far as it fits, how the cloud came to be. */
 static void note_provenance(shape_cloud *cloud, const char *made_by)
 {
@@ -344,8 +417,10 @@ int main(int argc, char **argv)
                       &error);
         }
         note_provenance(&set->clouds[i], made_by);
-        primitives += shape_primitives_count(shape_set_list(set, i));
     }
+    simplify(set, selected);
+    for (size_t i = 0; i < set->cloud_count; i++)
+        primitives += shape_primitives_count(shape_set_list(set, i));
     cli_say("%zu cloud%s, %zu primitives", set->cloud_count, set->cloud_count == 1 ? "" : "s", primitives);
     cli_write_set(&common, set);
     save_scene(&common);

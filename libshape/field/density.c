@@ -5,6 +5,7 @@
 
 #include "field/detail.h"
 #include "shape/grid.h"
+#include "shape/random.h"
 #include "shape/volume.h"
 
 /* u^2 below which a metaball's pole is cut off: a thousandth of the radius. */
@@ -73,8 +74,10 @@ float density_gamma(float kappa, float n, float u)
 
 float density_spheroid(const shape_volume_cloud *cloud, shape_vec3 p, float u)
 {
-    float n = density_fbm(cloud, p);
-    return n < density_gamma(cloud->field.kappa, n, u) ? n : 0;
+    float n = density_fbm(cloud, p), kappa = cloud->field.kappa;
+    float gamma = cloud->portable ? (float)shape_exp((double)(-u / fmaxf((1 - kappa) + 2 * kappa * n, 1e-6f)))
+                                  : density_gamma(kappa, n, u);
+    return n < gamma ? n : 0;
 }
 
 float density_metaball_sum(const shape_primitives *list, shape_vec3 p)

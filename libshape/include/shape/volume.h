@@ -26,6 +26,7 @@ typedef struct shape_volume_cloud {
     float most;       /* the largest density; 1 but for grids */
     shape_box box;    /* around all supports */
     uint32_t tree_index;
+    bool portable; /* take exponentials by shape_exp, slower, but the same on every machine; default false */
     /* For clouds with details and for layers, else unused. */
     bool detailed;
     const shape_primitives *shape_list; /* the set's */
