@@ -6,8 +6,9 @@
 #include "shape/file.h"
 
 #include <errno.h>
-#include <stdbool.h>
 #include <fcntl.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,14 +22,22 @@ static shape_status io_error(const char *path, const char *doing, int code, shap
     return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot %s: %s", path, doing, strerror(code));
 }
 
+static shape_status too_large(const char *path, size_t max_size, shape_error *error)
+{
+    return shape_error_set(error, SHAPE_ERROR_LIMIT, "%s: larger than the limit of %zu bytes (make it smaller)",
+                           path, max_size);
+}
+
 static shape_status read_all(int file, const char *path, size_t max_size, unsigned char **bytes, size_t *size,
                              shape_error *error)
 {
     unsigned char *buffer = NULL;
     size_t capacity = 0, used = 0;
     struct stat info;
-    if (!fstat(file, &info) && S_ISREG(info.st_mode) && info.st_size > 0 &&
-        (size_t)info.st_size <= max_size) {
+    bool regular = !fstat(file, &info) && S_ISREG(info.st_mode) && info.st_size > 0;
+    if (regular && (uintmax_t)info.st_size > max_size)
+        return too_large(path, max_size, error);
+    if (regular) {
         if (shape_array_reserve((void **)&buffer, &capacity, (size_t)info.st_size + 2, 1, error))
             return SHAPE_ERROR_MEMORY;
     }
@@ -48,8 +57,7 @@ static shape_status read_all(int file, const char *path, size_t max_size, unsign
         used += (size_t)got;
         if (used > max_size) {
             free(buffer);
-            return shape_error_set(error, SHAPE_ERROR_LIMIT, "%s: larger than the limit of %zu bytes", path,
-                                   max_size);
+            return too_large(path, max_size, error);
         }
         if (got == 0)
             break;
