@@ -24,8 +24,8 @@ static shape_status io_error(const char *path, const char *doing, int code, shap
 
 static shape_status too_large(const char *path, size_t max_size, shape_error *error)
 {
-    return shape_error_set(error, SHAPE_ERROR_LIMIT, "%s: larger than the limit of %zu bytes (make it smaller)",
-                           path, max_size);
+    return shape_error_set(error, SHAPE_ERROR_LIMIT,
+                           "%s: larger than the limit of %zu bytes (make it smaller)", path, max_size);
 }
 
 static shape_status read_all(int file, const char *path, size_t max_size, unsigned char **bytes, size_t *size,
