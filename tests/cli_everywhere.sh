@@ -82,6 +82,10 @@ line" '$(touch x)'; do
         [ -s "$made" ] || fail "there is no \"$made\""
         count=$((count + 1))
     done
+    case $name in
+    "a b" | "雲" | "$bad") ;; # meshes and volumes take longer: three names of the eight
+    *) continue ;;
+    esac
     cp torus.obj "./$name.obj"
     "$bin/neph-mesh" -q "./$name.obj" --faces 40 -o "./$name.mesh.neph" || fail "neph-mesh does not read \"$name.obj\""
     cp "$source/tests/frozen/vdb/fog.vdb" "./$name.vdb"

@@ -139,7 +139,7 @@ done
 refused 2 "16384" neph-render good.neph --size 20000x20000 -o x.png
 refused 1 "memory" neph-render good.neph --size 16384x16384 --spp 1 -o x.png
 refused 1 "limit of" neph-vdb big.raw -o x.neph
-refused 1 "big.raw\|memory" neph-vdb big.raw --max-memory 1e12 -o x.neph
+refused 1 "big.raw\|memory" neph-vdb big.raw --max-memory 1000000000000 -o x.neph
 refused 1 "has .* bytes" neph-vdb claim.raw -o x.neph
 refused 1 "65534" neph-vdb wide.raw -o x.neph
 for file in damaged*.vdb; do
