@@ -15,7 +15,7 @@ libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
 # To build and run the tests: the second compiler, the style, the test library, a screen without a screen.
 packages_test="
 clang libclang-rt-dev libomp-dev clang-format-14
-libcmocka-dev libopenvdb-tools libnanovdb-tools
+libcmocka-dev libopenvdb-tools libnanovdb-tools locales
 xvfb xauth xdotool x11-apps imagemagick python3
 bash zsh groff-base binutils fakeroot dpkg-dev"
 

@@ -277,12 +277,34 @@ static void test_bad_accessors(void **state)
     bad(nan, sizeof nan, PLAIN("{\"attributes\":{\"POSITION\":0},\"mode\":5}"), "not a finite number");
 }
 
+/* Lengths of a GLB's header and of its JSON that do not go together; found by fuzz_mesh: a whole that is shorter than
+ * the header made what is left wrap round, and was read beyond the end. */
+static void test_glb_lengths(void **state)
+{
+    (void)state;
+    static const uint32_t lengths[][2] = {{0, 4},  {19, 4},   {19, 1u << 30}, {20, 4},
+                                          {24, 5}, {24, ~0u}, {25, 4}};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        const uint32_t words[] = {0x46546c67, 2, lengths[i][0], lengths[i][1], 0x4E4F534A, 0x20207d7b};
+        shape_mesh *mesh = NULL;
+        shape_error error = {0};
+        unsigned char *bytes = malloc(sizeof words); /* so that the sanitizer knows its end */
+        assert_non_null(bytes);
+        memcpy(bytes, words, sizeof words);
+        assert_int_equal(shape_gltf_decode("a.glb", "", bytes, sizeof words, &mesh, &error),
+                         SHAPE_ERROR_FORMAT);
+        assert_non_null(strstr(error.text, "a.glb"));
+        free(bytes);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_strip_and_fan), cmocka_unit_test(test_indices),
         cmocka_unit_test(test_interleaved),   cmocka_unit_test(test_sparse),
         cmocka_unit_test(test_quantised),     cmocka_unit_test(test_transforms),
-        cmocka_unit_test(test_bad_nodes),     cmocka_unit_test(test_bad_accessors)};
+        cmocka_unit_test(test_bad_nodes),     cmocka_unit_test(test_bad_accessors),
+        cmocka_unit_test(test_glb_lengths)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

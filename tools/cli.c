@@ -2,6 +2,7 @@
 #include "cli.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <popt.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -161,10 +162,29 @@ static int collect(const cli_program *program, const cli_group *own, const cli_o
     return count;
 }
 
+/* A stream that was closed before we began must not become a file of ours, into which messages would go: it is opened
+ * the wrong way round, so that its use is an error as it would have been. */
+static void hold_streams(void)
+{
+    for (int stream = 0; stream <= 2; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", stream ? O_RDONLY : O_WRONLY) != stream)
+            exit(CLI_FAILED);
+}
+
+/* The end of what was asked for and needs no work. */
+static _Noreturn void end_output(void)
+{
+    if (fflush(stdout))
+        cli_fail("standard output: cannot write: %s", strerror(errno));
+    exit(CLI_DONE);
+}
+
 void cli_parse(const cli_program *program, int argc, char **argv, cli_common *common)
 {
     program_name = program->name;
+    hold_streams();
     signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error of write(), reported like another */
+    signal(SIGXFSZ, SIG_IGN); /* and so is a file that may not grow further */
     cli_common start = {.output = "-", .seed = 1};
     *common = start;
     const cli_option rows[] = {
@@ -218,11 +238,11 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
             print_help(&whole);
         else
             cli_generate(common, &whole, (cli_generate_kind)generate_kind);
-        exit(fflush(stdout) ? CLI_FAILED : CLI_DONE);
+        end_output();
     }
     if (show_version) {
         printf("%s %s\n", program->name, shape_version());
-        exit(fflush(stdout) ? CLI_FAILED : CLI_DONE);
+        end_output();
     }
     const char **rest = poptGetArgs(context);
     while (rest && rest[common->argument_count])

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "shape/file.h"
@@ -39,12 +40,15 @@ static bool has_suffix(const char *path, const char *suffix)
     return length > end && !strcasecmp(path + length - end, suffix);
 }
 
-/* The first bytes and how many there are. */
+/* The first bytes and how many there are; none of what can be read once only, a pipe. */
 static size_t read_start(const char *path, unsigned char *bytes, size_t room, size_t *whole)
 {
-    FILE *file = fopen(path, "rb");
+    struct stat info;
     size_t size = 0;
     *whole = 0;
+    if (stat(path, &info) || !S_ISREG(info.st_mode))
+        return 0;
+    FILE *file = fopen(path, "rb");
     if (!file)
         return 0;
     size = fread(bytes, 1, room, file);

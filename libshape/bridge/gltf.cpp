@@ -138,7 +138,7 @@ std::string glb_text(const unsigned char *bytes, size_t size)
     if (length > size)
         throw Problem("says it has " + std::to_string(length) + " bytes, but has " + std::to_string(size) +
                       " (it is cut off)");
-    if (word_at(bytes + 16) != 0x4E4F534A || json > length - 20)
+    if (length < 20 || word_at(bytes + 16) != 0x4E4F534A || json > length - 20)
         throw Problem("has no whole JSON chunk (it is damaged)");
     size_t at_bin = 20 + json;
     if (length - at_bin >= 8 && word_at(bytes + at_bin) > length - at_bin - 8)

@@ -65,8 +65,11 @@ static void sample(const shape_volume *volume, fit_lattice *lattice)
 static double find_level(const fit_lattice *lattice)
 {
     double level = 0;
-    for (size_t i = 0; i < lattice->count; i++)
-        level = fmax(level, (double)lattice->extinction[i]);
+    for (size_t i = 0; i < lattice->count; i++) {
+        double value =
+            (double)lattice->extinction[i]; /* not fmax: gcc 12 for arm64 breaks on it here, at -O3 */
+        level = value > level ? value : level;
+    }
     for (int round = 0; round < 50; round++) {
         double sum = 0, count = 0;
         for (size_t i = 0; i < lattice->count; i++)

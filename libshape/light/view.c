@@ -131,7 +131,9 @@ void shape_view_frame(shape_view *view, const shape_light *light, shape_dvec3 mi
     double distance = 0;
     for (int i = 0; i < 8; i++) {
         shape_dvec3 corner = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
-        distance = fmax(distance, distance_for(&camera, corner, fill));
+        double wanted =
+            distance_for(&camera, corner, fill); /* not fmax: gcc 12 for arm64 breaks on it here */
+        distance = wanted > distance ? wanted : distance;
     }
     view->target = middle;
     view->eye = shape_dvec3_add(middle, shape_dvec3_scale(out, distance > 0 ? distance : 1));
