@@ -11,19 +11,27 @@
 enum { NEVER_SHOWN = 10 };
 static const double never_margin = 1.1; /* times slower than another as accurate: more than chance */
 
+static void print_time(FILE *file, const chart_row *row, chart_kind kind)
+{
+    double time = chart_median(row, kind);
+    fprintf(file, ", %.*f ms |", time >= 100 ? 0 : time >= 10 ? 1 : 2, time);
+}
+
 static void print_pick(FILE *file, const chart_scene *scene, chart_kind kind, double error)
 {
     const chart_row *row = chart_front_pick(scene, kind, error * error);
     if (row) {
-        fprintf(file, " `%s %s`, %.3g ms |", chart_method_name(row->setting->method), row->text,
-                chart_median(row, kind));
+        fprintf(file, " `%s %s`", chart_method_name(row->setting->method), row->text);
+        print_time(file, row, kind);
     } else {
         row = chart_front_best(scene, kind);
-        if (!row)
+        if (!row) {
             fprintf(file, " not measured |");
-        else
-            fprintf(file, " none; the best reaches %.2g %%: `%s %s`, %.3g ms |", 100 * sqrt(row->relmse),
-                    chart_method_name(row->setting->method), row->text, chart_median(row, kind));
+            return;
+        }
+        fprintf(file, " none; the best reaches %.2g %%: `%s %s`", 100 * sqrt(row->relmse),
+                chart_method_name(row->setting->method), row->text);
+        print_time(file, row, kind);
     }
 }
 

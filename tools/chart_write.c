@@ -175,7 +175,7 @@ static void print_script(FILE *file, const chart_plan *plan, const char *termina
 {
     fprintf(file, "set encoding utf8\nset terminal %s noenhanced font \"sans,10\" size %d,%d\n", terminal,
             2 * PANEL_WIDTH, (int)plan->scene_count * PANEL_HEIGHT);
-    fprintf(file, "set logscale xy\nset xlabel \"milliseconds\"\nset ylabel \"error, percent\"\n"
+    fprintf(file, "set logscale xy\nset xlabel \"milliseconds\" offset 0,0.6\nset ylabel \"error, percent\"\n"
                   "set grid xtics ytics back lt 1 lc rgb \"#dddddd\"\nset key below samplen 1.5\n"
                   "set ytics (0.1, 0.2, 0.5, 1, 2, 3, 5, 10, 20, 30, 50, 100, 200)\n");
     fprintf(file, "set multiplot layout %zu,2\n", plan->scene_count);
