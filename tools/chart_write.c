@@ -143,7 +143,7 @@ static void print_ranges(FILE *file, const chart_scene *scene, chart_kind kind)
     }
     if (!(t0 <= t1))
         t0 = t1 = e0 = e1 = 1;
-    fprintf(file, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", t0 / pow(fmax(t1 / t0, 10), 0.55),
+    fprintf(file, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", t0 / pow(fmax(t1 / t0, 10), 0.7),
             t1 * 1.4, e0 / 1.3, e1 * 1.3);
 }
 
