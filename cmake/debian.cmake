@@ -33,6 +33,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME nephele)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "libshape${SHAPE_SOVERSION} ${same_version}")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "gnuplot-nox") # of neph-chart
 set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION
     "Small programs that make a cloud out of spheres and rotated ellipsoids, change it, show it, render it and measure it. Each is a filter over .neph files.")
 

@@ -9,8 +9,9 @@ libpng-dev libopenexr-dev
 libopenmesh-dev libtinygltf-dev
 libopenvdb-dev libnanovdb-dev libtbb-dev libimath-dev libboost-dev
 libglfw3-dev libepoxy-dev libcglm-dev libimgui-dev
+gnuplot-nox
 libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
-# The last line is OpenGL, Mesa's software renderer included: pictures need no graphics card.
+# gnuplot draws neph-chart's charts. The last line is OpenGL, Mesa's software renderer included: pictures need no graphics card.
 
 # To build and run the tests: the second compiler, the style, the test library, a screen without a screen.
 packages_test="

@@ -39,7 +39,7 @@ options_of()
     neph-info) echo "json csv allow-outside" ;;
     neph-render) echo "$picture $save allow-outside method spp noise rule steps light stats compare tolerance density-gain" ;;
     neph-vdb) echo "resolution voxel-size half up ramp grid primitives error max-memory values grids each" ;;
-    neph-chart) echo "quick" ;;
+    neph-chart) echo "quick size runs reference-noise allow-outside" ;;
     neph-view) echo "$picture $save allow-outside headless method bench frames" ;;
     *) return 1 ;;
     esac
