@@ -40,7 +40,7 @@ options_of()
     neph-render) echo "$picture $save allow-outside method spp noise rule steps light stats compare tolerance density-gain" ;;
     neph-vdb) echo "resolution voxel-size half up ramp grid primitives error max-memory values grids each" ;;
     neph-chart) echo "quick size runs reference-noise allow-outside" ;;
-    neph-view) echo "$picture $save allow-outside headless method bench frames" ;;
+    neph-view) echo "$picture $save allow-outside headless method bench frames error" ;;
     *) return 1 ;;
     esac
 }

@@ -18,18 +18,23 @@ static bool headless, paper_lod;
 static int method;
 static int64_t bench_frames, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
-static bool bench_given, light_grid_given, frames_given, overwrite, alpha, day_given, decay_given, time_given;
-static double frame_range[2], fps = 25, moment_time, decay_range[2];
+static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
+    day_given, decay_given, time_given;
+static double allowed_error, frame_range[2], fps = 25, moment_time, decay_range[2];
 static view_course course;
 
 static const cli_option view_options[] = {
     {"headless", 0, CLI_FLAG, &headless, 0, 0, NULL, "no window: write one picture to -o", NULL, true},
     {"method", 0, CLI_CHOICE, &method, 0, 0, "default|exact|paper|paper-ndt",
      "how to draw; the last two only for comparison [default]", NULL, true},
-    {"samples", 0, CLI_INTEGER, &samples, 1, 65536, "N", "samples a pixel of a picture at rest [32]", NULL,
-     true},
+    {"samples", 0, CLI_INTEGER, &samples, 1, 65536, "N", "samples a pixel of a picture at rest [32]",
+     &samples_given, true},
     {"light-grid", 0, CLI_INTEGER, &light_grid, 2, 256, "N",
      "cells along the longest side of a cloud's light grid [48; paper: 40]", &light_grid_given, true},
+    {"error", 0, CLI_NUMBER, &allowed_error, 1e-4, 1, "E",
+     "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
+     "[off]",
+     &error_given, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
      "draw N frames on an orbit of half a degree a frame, print times as JSON", &bench_given, true},
     {"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
@@ -192,6 +197,24 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
     free(times);
 }
 
+/* A picture to --error, and what was chosen for it. */
+static void draw_within(const view_job *job, const shape_view *view, const shape_light *light,
+                        const cli_common *common)
+{
+    shape_error error;
+    shape_gl_renderer *renderer;
+    view_quality chosen;
+    double change;
+    cli_check(view_draw_within(job, view, light, allowed_error, &renderer, &chosen, &change, &error), &error);
+    cli_say("light grid of %d cells, %.3g million voxels at most, %d samples a pixel: %.4f from the picture "
+            "half as "
+            "fine%s",
+            chosen.light_cells, (double)chosen.voxels * 1e-6, chosen.samples, change,
+            change > allowed_error ? " (more than --error; there is no finer one)" : "");
+    write_picture(job, view, renderer, common);
+    shape_gl_destroy(renderer);
+}
+
 static void draw_headless(view_job *job, double started, const cli_common *common)
 {
     shape_error error;
@@ -202,6 +225,11 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     view_course_view(&job->course, job->time, &view);
     view_course_light(&job->course, job->time, &light);
     cli_check(shape_gl_context_create(&context, &error), &error);
+    if (error_given) {
+        draw_within(job, &view, &light, common);
+        shape_gl_context_destroy(context);
+        return;
+    }
     cli_check(shape_gl_create(&job->options, &renderer, &error), &error);
     cli_check(shape_gl_load(renderer, job->volume, &error), &error);
     cli_check(shape_gl_light(renderer, &light, &error), &error);
@@ -292,6 +320,10 @@ static void check_command(const cli_common *common, view_frames *frames)
     shape_error error;
     if (!headless && !bench_given && !frames_given && common->output_given)
         cli_wrong("-o needs --headless, --frames or --bench (a window writes no picture)");
+    if (error_given && (!headless || bench_given || frames_given))
+        cli_wrong("--error needs --headless, and no --bench or --frames");
+    if (error_given && (samples_given || light_grid_given || method >= SHAPE_GL_PAPER))
+        cli_wrong("--error chooses samples and light grid itself, for the methods default and exact");
     if (alpha && !headless && !frames_given)
         cli_wrong("--alpha needs --headless or --frames");
     if (bench_given && frames_given)

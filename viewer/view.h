@@ -43,6 +43,20 @@ shape_status view_read_image(shape_gl_renderer *renderer, int width, int height,
 shape_status view_encode(shape_gl_renderer *renderer, const shape_view *view, bool alpha, const char *output,
                          unsigned char **bytes, size_t *size, shape_error *error);
 
+/* within.c: a picture to an allowed error. */
+typedef struct view_quality {
+    int light_cells; /* along the longest side of a cloud's light grid */
+    size_t voxels;   /* of all baked grids, at most */
+    int samples;     /* a pixel */
+} view_quality;
+
+/* Draws coarse first, then finer, until the last step changed the picture by no more than `allowed` (square root of the
+ * relative MSE, shape/imageerror.h), or there is no finer one; *change says by how much it did. What light grids are off
+ * by however fine they are is not in it. The caller destroys *renderer, which holds the picture. */
+shape_status view_draw_within(const view_job *job, const shape_view *view, const shape_light *light,
+                              double allowed, shape_gl_renderer **renderer, view_quality *chosen,
+                              double *change, shape_error *error);
+
 /* frames.c: a sequence of pictures. */
 typedef struct view_frames {
     int64_t first, last;
