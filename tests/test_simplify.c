@@ -44,7 +44,7 @@ static shape_primitives copy_of(const shape_primitives *list)
 static bool same_lists(const shape_primitives *a, const shape_primitives *b)
 {
     return a->sphere_count == b->sphere_count && a->ellipsoid_count == b->ellipsoid_count &&
-           !memcmp(a->spheres, b->spheres, a->sphere_count * sizeof *a->spheres) &&
+           (!a->sphere_count || !memcmp(a->spheres, b->spheres, a->sphere_count * sizeof *a->spheres)) &&
            (!a->ellipsoid_count ||
             !memcmp(a->ellipsoids, b->ellipsoids, a->ellipsoid_count * sizeof *a->ellipsoids));
 }
