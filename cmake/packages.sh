@@ -18,7 +18,7 @@ packages_test="
 clang libclang-rt-dev libomp-dev clang-format-14
 libcmocka-dev libopenvdb-tools libnanovdb-tools locales
 xvfb xauth xdotool x11-apps imagemagick python3
-bash zsh groff-base binutils fakeroot dpkg-dev"
+bash zsh git groff-base binutils fakeroot dpkg-dev"
 
 # Prints its arguments as one line on standard error, after the script's name, and ends the script.
 die()
