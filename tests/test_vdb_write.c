@@ -54,7 +54,9 @@ static filled fill(const shape_set *set, int resolution, bool z_up, shape_voxel_
     filled f;
     double min[3], max[3], longest = 0;
     must(shape_volume_create(set, &f.volume, &error), &error);
-    assert_true(shape_voxels_bounds(f.volume, request.cloud, z_up, min, max));
+    bool any = false;
+    must(shape_voxels_bounds(f.volume, request.cloud, z_up, min, max, &any, &error), &error);
+    assert_true(any);
     for (int k = 0; k < 3; k++)
         longest = fmax(longest, max[k] - min[k]);
     must(shape_voxels_lay_out(min, max, longest / resolution, z_up, &f.lattice, &error), &error);
@@ -163,7 +165,9 @@ static void test_stretched(void **state)
     shape_volume *volume;
     double min[3], max[3];
     must(shape_volume_create(set, &volume, &error), &error);
-    assert_true(shape_voxels_bounds(volume, -1, false, min, max));
+    bool any = false;
+    must(shape_voxels_bounds(volume, -1, false, min, max, &any, &error), &error);
+    assert_true(any);
     const double half[3] = {2, 0.5, sqrt(1.25)};
     for (int k = 0; k < 3; k++) {
         assert_true(fabs(max[k] - half[k]) < 1e-6);

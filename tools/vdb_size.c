@@ -118,7 +118,9 @@ shape_voxel_lattice vdb_choose_lattice(const cli_common *common, const shape_vol
     shape_error error;
     shape_voxel_lattice lattice;
     question q = {.volume = volume, .requests = requests, .request_count = request_count, .format = format};
-    if (!shape_voxels_bounds(volume, -1, !vdb.up, q.min, q.max))
+    bool any;
+    cli_check(shape_voxels_bounds(volume, -1, !vdb.up, q.min, q.max, &any, &error), &error);
+    if (!any)
         cli_fail("%s: no cloud in it has a primitive (there is nothing to write)", common->arguments[0]);
     for (int k = 0; k < 3; k++)
         q.longest = fmax(q.longest, q.max[k] - q.min[k]);

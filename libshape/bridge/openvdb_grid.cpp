@@ -132,7 +132,7 @@ shape_status convert(const openvdb::FloatGrid &grid, const shape_vdb_read_option
     if (box.empty())
         return shape_error_set(error, SHAPE_ERROR_FORMAT, "the grid \"%s\" is empty: no active voxel",
                                contents.name);
-    const int far = 1 << 30; // sums of coordinates stay in range
+    const int far = 1 << 29; // sums and differences of coordinates stay in range
     for (int a = 0; a < 3; a++)
         if (box.min()[a] < -far || box.max()[a] > far ||
             box.max()[a] - box.min()[a] + 3 > SHAPE_GRID_MAX_SIDE)

@@ -87,6 +87,8 @@ shape_status budget_stage_set(budget_stage *stage, const shape_primitives *list,
                       (double)box.max.z - box.min.z};
     double longest = side[0] > side[1] ? side[0] : side[1];
     longest = longest > side[2] ? longest : side[2];
+    if (!(longest > 0))
+        return SHAPE_OK; /* thinner than single precision tells: nothing to be seen */
     double cell = longest * 1.25 / resolution;
     for (int k = 0; k < 3; k++) {
         int cells = (int)(side[k] * 1.25 / cell + 0.999);

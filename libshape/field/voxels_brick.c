@@ -120,7 +120,7 @@ static void find_u2(const voxel_job *job, const shape_volume_cloud *cloud, const
     for (int i = 0; i < VOXEL_BRICK; i++)
         room->u2[i] = INFINITY;
     for (size_t i = 0; i < count; i++) {
-        float content = job->forms[list[i]].content;
+        int32_t content = job->forms[list[i]].content;
         if (content > 0)
             sphere_u2(&cloud->list->spheres[(size_t)content - 1], room, room->u2);
         else

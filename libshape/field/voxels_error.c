@@ -72,9 +72,13 @@ shape_status shape_voxels_error(const shape_volume *volume, const shape_voxel_re
     shape_voxel_lattice lattice, metres = {.edge = 1};
     voxel_forms forms;
     *rmse = 0;
-    if (!shape_voxels_bounds(volume, request->cloud, false, min, max))
-        return SHAPE_OK;
-    shape_status status = shape_voxels_lay_out(min, max, edge, false, &lattice, error);
+    if (samples < 1)
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "%d samples (at least 1 is needed)", samples);
+    bool any;
+    shape_status status = shape_voxels_bounds(volume, request->cloud, false, min, max, &any, error);
+    if (status || !any)
+        return status;
+    status = shape_voxels_lay_out(min, max, edge, false, &lattice, error);
     if (!status)
         status = voxel_forms_make(volume, request->cloud, &metres, &forms, error);
     if (status)

@@ -141,7 +141,7 @@ static void add_cloud(const shape_volume *volume, size_t index, const shape_voxe
         else
             shape_form(f, &p, (double[3]){(double)s->x, (double)s->y, (double)s->z}, (double[3]){r, r, r},
                        identity);
-        f->slack = slack, f->cloud = (uint32_t)index, f->content = (float)(i + 1);
+        f->slack = slack, f->cloud = (uint32_t)index, f->content = (int32_t)(i + 1);
     }
     to += list->sphere_count;
 #pragma omp parallel for schedule(static) if (list->ellipsoid_count > 10000)
@@ -153,7 +153,7 @@ static void add_cloud(const shape_volume *volume, size_t index, const shape_voxe
         shape_form(f, &p, (double[3]){(double)e->x, (double)e->y, (double)e->z},
                    (double[3]){(double)e->a * support, (double)e->b * support, (double)e->c * support}, r);
         f->radius = 0;
-        f->slack = slack, f->cloud = (uint32_t)index, f->content = -(float)(i + 1);
+        f->slack = slack, f->cloud = (uint32_t)index, f->content = -(int32_t)(i + 1);
     }
     forms->count += shape_primitives_count(list);
 }
@@ -199,25 +199,28 @@ static void cloud_bounds(const shape_volume_cloud *cloud, const voxel_form *form
     }
 }
 
-bool shape_voxels_bounds(const shape_volume *volume, int cloud, bool z_up, double min[3], double max[3])
+shape_status shape_voxels_bounds(const shape_volume *volume, int cloud, bool z_up, double min[3],
+                                 double max[3], bool *any, shape_error *error)
 {
     const shape_voxel_lattice metres = {.edge = 1, .z_up = z_up};
-    bool any = false;
+    *any = false;
     for (size_t i = 0; i < volume->cloud_count; i++) {
         voxel_forms forms;
         double low[3], high[3];
-        if ((cloud >= 0 && i != (size_t)cloud) || !shape_primitives_count(volume->clouds[i].list) ||
-            voxel_forms_make(volume, (int)i, &metres, &forms, NULL))
+        if ((cloud >= 0 && i != (size_t)cloud) || !shape_primitives_count(volume->clouds[i].list))
             continue;
+        shape_status status = voxel_forms_make(volume, (int)i, &metres, &forms, error);
+        if (status)
+            return status;
         cloud_bounds(&volume->clouds[i], forms.items, forms.count, z_up, low, high);
         free(forms.items);
         for (int k = 0; k < 3; k++) {
-            min[k] = any ? fmin(min[k], low[k]) : low[k];
-            max[k] = any ? fmax(max[k], high[k]) : high[k];
+            min[k] = *any ? fmin(min[k], low[k]) : low[k];
+            max[k] = *any ? fmax(max[k], high[k]) : high[k];
         }
-        any = true;
+        *any = true;
     }
-    return any;
+    return SHAPE_OK;
 }
 
 shape_status shape_voxels_lay_out(const double min[3], const double max[3], double edge, bool z_up,

@@ -15,7 +15,7 @@ typedef struct voxel_form {
     float thin, fat; /* its least and greatest semi-axis */
     float slack;     /* how far the cloud's single precision may move it */
     uint32_t cloud;
-    float content; /* i + 1: sphere i of the cloud's supports; -(i + 1): ellipsoid i */
+    int32_t content; /* i + 1: sphere i of the cloud's supports; -(i + 1): ellipsoid i */
 } voxel_form;
 
 typedef struct voxel_forms {

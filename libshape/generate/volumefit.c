@@ -384,7 +384,9 @@ static shape_status fit(fit_job *job, shape_volumefit_report *report, shape_erro
     const shape_volumefit_options *o = job->options;
     bool growing = o->error > 0;
     size_t count = growing && o->primitives > FIRST ? FIRST : o->primitives;
-    double steps = growing ? ceil(log((double)o->primitives / FIRST) / log(1.5)) + 1 : 1, unused;
+    double steps =
+        growing && o->primitives > FIRST ? ceil(log((double)o->primitives / FIRST) / log(1.5)) + 1 : 1;
+    double unused;
     shape_status status = SHAPE_OK;
     for (int step = 0; !status && !job->stopped; step++) {
         status = set_balls(&job->u, count, &job->scratch, error);

@@ -262,6 +262,11 @@ shape_status shape_paper_render(const shape_volume *volume, const shape_view *vi
         status = shape_light_check(light, error);
     if (status)
         return status;
+    for (size_t i = 0; i < volume->cloud_count; i++)
+        if (volume->clouds[i].field.model == SHAPE_MODEL_GRID)
+            return shape_error_set(
+                error, SHAPE_ERROR_ARGUMENT,
+                "the paper's methods draw primitives, not voxel grids (choose another --method)");
     shape_lightgrid *grids = calloc(volume->cloud_count + 1, sizeof *grids);
     paper_picture picture = {volume,
                              view,

@@ -50,6 +50,8 @@ void shape_record_fill(shape_record record, const shape_volume_cloud *c, const s
     }
     put(record[16], c->medium.albedo, c->medium.phase, c->medium.g, c->medium.g2);
     put(record[17], c->medium.lobe_mix, mean, share, rest);
+    for (int i = 24; i < SHAPE_RECORD_TEXELS; i++)
+        put(record[i], 0, 0, 0, 0);
     if (c->detailed)
         fill_details(record, c, places);
 }

@@ -22,8 +22,7 @@ static shape_status copy_list(shape_primitives *to, const shape_primitives *from
     copy.sphere_count = from->sphere_count;
     copy.ellipsoid_count = from->ellipsoid_count;
     copy.grid = from->grid;
-    if (copy.grid)
-        copy.grid->users++;
+    shape_grid_keep(copy.grid);
     *to = copy;
     return SHAPE_OK;
 }

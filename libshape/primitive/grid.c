@@ -148,9 +148,15 @@ shape_status shape_grid_create(const shape_grid_source *source, size_t max_bytes
     return SHAPE_OK;
 }
 
+void shape_grid_keep(shape_grid *grid)
+{
+    if (grid)
+        __atomic_add_fetch(&grid->users, 1, __ATOMIC_RELAXED);
+}
+
 void shape_grid_release(shape_grid *grid)
 {
-    if (!grid || --grid->users)
+    if (!grid || __atomic_sub_fetch(&grid->users, 1, __ATOMIC_ACQ_REL))
         return;
     free(grid->table);
     free(grid->values);

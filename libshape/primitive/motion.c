@@ -212,6 +212,21 @@ static void drift_frame(shape_cloud *cloud, const double drift[3])
     cloud->frame = shape_frame_multiply(&cloud->frame, &move);
 }
 
+/* A voxel grid has no primitives to grow and no noise to drift; wind and shear carry it like any cloud. */
+static shape_status refuse_grids(const shape_set *set, const shape_motion *m, shape_error *error)
+{
+    if (!moves(m->drift) && m->life <= 0 && m->grow <= 0 && m->decay <= 0)
+        return SHAPE_OK;
+    for (size_t i = 0; i < set->cloud_count; i++)
+        if (set->clouds[i].field.model == SHAPE_MODEL_GRID)
+            return shape_error_set(
+                error, SHAPE_ERROR_ARGUMENT,
+                "cloud \"%s\" is a voxel grid: nothing in it grows, decays or drifts (give wind or "
+                "shear)",
+                set->clouds[i].name);
+    return SHAPE_OK;
+}
+
 static shape_status apply(shape_set *set, change_context *c, shape_error *error)
 {
     const shape_motion *m = c->motion;
@@ -222,7 +237,7 @@ static shape_status apply(shape_set *set, change_context *c, shape_error *error)
     change_key *keys = calloc(set->cloud_count + 1, sizeof *keys);
     if (!keys)
         return shape_error_memory(error);
-    shape_status status = SHAPE_OK;
+    shape_status status = refuse_grids(set, m, error);
     for (size_t i = 0; i < set->cloud_count && !status; i++)
         status = describe(set, i, &keys[i], c, error);
     const shape_list_change change = {sizeof *keys, describe, change_list, c};

@@ -65,7 +65,8 @@ shape_voxel_lattice make_lattice(const shape_volume *volume, int resolution)
     shape_error error;
     double min[3], max[3], longest = 0;
     shape_voxel_lattice lattice;
-    shape_voxels_bounds(volume, -1, false, min, max);
+    bool any;
+    must(shape_voxels_bounds(volume, -1, false, min, max, &any, &error), error);
     for (int k = 0; k < 3; k++)
         longest = std::fmax(longest, max[k] - min[k]);
     must(shape_voxels_lay_out(min, max, longest / resolution, false, &lattice, &error), error);

@@ -31,7 +31,7 @@ typedef struct shape_grid {
     size_t brick_count;
     float most;     /* the largest value */
     float gain;     /* density is the sample times this, >= 0 and finite; 1 unless the caller sets it */
-    unsigned users; /* lists that name it */
+    unsigned users; /* lists that name it; by shape_grid_keep and shape_grid_release only */
 } shape_grid;
 
 /* Where a grid's values come from. brick() fills the 9^3 values, x fastest, of the points from low[] to low[] + 8 (those
@@ -48,6 +48,8 @@ typedef struct shape_grid_source {
  * SHAPE_ERROR_MEMORY. The caller destroys it, or gives it to a set. */
 shape_status shape_grid_create(const shape_grid_source *source, size_t max_bytes, shape_grid **grid,
                                shape_error *error);
+/* One use more, for another list that names it. Sets on different threads may share a grid. NULL is allowed. */
+void shape_grid_keep(shape_grid *grid);
 /* Gives up one use; the last one frees. NULL is allowed. */
 void shape_grid_release(shape_grid *grid);
 

@@ -88,7 +88,7 @@ typedef struct shape_march_options {
     double alpha_peel;  /* pixels with less coverage show no cloud, 0 to 1; default 0 */
     uint64_t seed;      /* of the jitter */
     const shape_opaque *opaque; /* finished; default NULL */
-    shape_progress progress;    /* default none; see shape/pathtrace.h */
+    shape_progress progress;    /* default none */
     void *progress_context;
 } shape_march_options;
 

@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/* All zero: nothing moves. */
+/* All zero: nothing moves. Voxel grids take wind and shear alone. */
 typedef struct shape_motion {
     double wind[3]; /* what carries the clouds, their noise included [m/s, world], each within +-1000 */
     double

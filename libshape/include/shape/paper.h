@@ -15,7 +15,7 @@ typedef struct shape_paper_options {
     bool lod;                /* the printed distance formula for the step, rather than 0.1 m */
     int resolution;          /* cells of the light grid along each side, 2 to 256; default 40 */
     int samples;             /* rays a pixel, 1 to 4096; default 1 */
-    shape_progress progress; /* default none; see shape/pathtrace.h */
+    shape_progress progress; /* default none */
     void *progress_context;
 } shape_paper_options;
 

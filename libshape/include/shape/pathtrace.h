@@ -44,9 +44,6 @@ typedef struct shape_lamp {
     float intensity[3];   /* 0 each: no lamp */
 } shape_lamp;
 
-/* Called between passes by one thread. done is the share of the work, 0 to 1; false ends the work. */
-typedef bool (*shape_progress)(void *context, double done);
-
 typedef struct shape_pathtrace_options {
     int samples; /* paths a pixel, 1 to 2^20; default 64. With `noise`: the most */
     double

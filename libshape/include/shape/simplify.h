@@ -25,7 +25,8 @@ shape_status shape_simplify_check(const shape_simplify_options *options, shape_e
 
 /* Replaces a cloud's list by a shorter one. `cloud` says which field the list makes, how dense, and by its frame how
  * large; its own list is not looked at. With `error`, as few primitives as bisection finds whose measured change is at
- * most that; with `most`, that number exactly where there are more; with both, the fewer of the two, and the change
+ * most that; with `most`, that number exactly where there are more that
+ * differ (exact duplicates go first); with both, the fewer of the two, and the change
  * may then be larger than `error`. A larger `error` never keeps more. What is not merged stays bit for bit, and the order
  * stays. Layers and grids, whose primitives are no heap, are left as they are. The result is the same for any number of
  * threads, and on every machine. result may be NULL. Errors: options, memory; the list is then untouched. */

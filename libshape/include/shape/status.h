@@ -2,6 +2,8 @@
 #ifndef SHAPE_STATUS_H
 #define SHAPE_STATUS_H
 
+#include <stdbool.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -35,6 +37,9 @@ shape_status shape_error_set(shape_error *error, shape_status status, const char
 
 /* The usual line for a failed allocation. Returns SHAPE_ERROR_MEMORY. */
 shape_status shape_error_memory(shape_error *error);
+
+/* Of long work, called now and then by one thread. done is the share of the work, 0 to 1; false ends the work. */
+typedef bool (*shape_progress)(void *context, double done);
 
 /* The library's version, "major.minor.patch". Static storage. */
 const char *shape_version(void);

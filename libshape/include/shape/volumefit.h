@@ -3,7 +3,6 @@
 #ifndef SHAPE_VOLUMEFIT_H
 #define SHAPE_VOLUMEFIT_H
 
-#include "shape/pathtrace.h"
 #include "shape/volume.h"
 
 #ifdef __cplusplus
@@ -17,9 +16,11 @@ typedef struct shape_volumefit_options {
     double
         error; /* stop with the fewest (found in steps of a half) whose error, see the report, is at most this;
                        0: use all; default 0 */
-    int resolution;          /* cells along the longest side that the fit looks at, 16 to 512; default 80 */
-    int rounds;              /* of improvement for each number of primitives, 0 to 10000; default 240 */
-    shape_model model;       /* uniform (default) or spheroid, whose noise erodes the edges */
+    int resolution; /* cells along the longest side that the fit looks at, 16 to 512; default 80 */
+    int rounds;     /* of improvement for each number of primitives, 0 to 10000; default 240 */
+    shape_model
+        model; /* uniform (default) or spheroid, whose noise erodes the edges: the number of primitives is
+                              * chosen by their plain union even so, and the report tells what the noise leaves */
     shape_progress progress; /* default none */
     void *progress_context;
 } shape_volumefit_options;

@@ -63,8 +63,9 @@ typedef struct shape_voxel_sink {
     bool (*tile)(void *context, const int32_t first[3], int32_t edge, float value);
 } shape_voxel_sink;
 
-/* The box around the supports of one cloud or (-1) all, in output axes [m]; false where there is nothing. */
-bool shape_voxels_bounds(const shape_volume *volume, int cloud, bool z_up, double min[3], double max[3]);
+/* The box around the supports of one cloud or (-1) all, in output axes [m]; *any: whether there is something. */
+shape_status shape_voxels_bounds(const shape_volume *volume, int cloud, bool z_up, double min[3],
+                                 double max[3], bool *any, shape_error *error);
 
 /* A lattice over such a box with voxels of that edge. Errors: SHAPE_ERROR_ARGUMENT for an edge not above 0,
  * SHAPE_ERROR_LIMIT above SHAPE_VOXEL_MOST voxels a side. */
@@ -86,7 +87,8 @@ shape_status shape_voxels_fill(const shape_volume *volume, const shape_voxel_lat
                                shape_error *error);
 
 /* How well voxels of that edge hold the density: the root mean square, over `samples` seeded random points of the
- * supports, of trilinear interpolation between voxel centres less the density itself. */
+ * supports, of trilinear interpolation between voxel centres less the density itself. Of the request only the
+ * cloud counts. Errors: SHAPE_ERROR_ARGUMENT for samples below 1, memory. */
 shape_status shape_voxels_error(const shape_volume *volume, const shape_voxel_request *request, double edge,
                                 int samples, uint64_t seed, double *rmse, shape_error *error);
 
