@@ -219,6 +219,7 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         char *text = poptGetOptArg(context);
         cli_store(all[code - 1], text ? text : "");
         cli_record_option(all[code - 1], text);
+        cli_note_given(all[code - 1], text);
         free(kept[code - 1]);
         kept[code - 1] = text;
     }

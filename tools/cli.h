@@ -89,6 +89,15 @@ void cli_error(const char *format, ...) SHAPE_PRINTF(1, 2);
 void cli_fail(const char *format, ...) SHAPE_PRINTF(1, 2);
 /* The same, then exit 2: for combinations of options that make no sense. */
 void cli_wrong(const char *format, ...) SHAPE_PRINTF(1, 2);
+/* Whether the command line gave an option by this name, and the first of a table that it gave, or NULL. */
+bool cli_given(const char *name);
+const char *cli_given_of(const cli_option *table);
+/* Appends the options of a table that were given, " --name text", as a shell reads them back; cut at room bytes. */
+void cli_given_text(const cli_option *table, char *text, size_t room);
+
+/* Whether a path ends in ".vdb" or the like, in capitals or not. */
+bool cli_has_suffix(const char *path, const char *suffix);
+
 /* Nothing where status is SHAPE_OK, else the error's text and exit 1. */
 void cli_check(shape_status status, const shape_error *error);
 /* A summary line on standard error, unless -q. */

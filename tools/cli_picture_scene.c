@@ -1,4 +1,5 @@
 /* Camera and light between the picture options and a scene, and --save-scene of programs that make pictures. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,12 +47,29 @@ void cli_picture_use_scene(const shape_scene *scene)
     v->size_given = v->size_given || scene->size_given;
 }
 
+/* The sun as it was shown. It may have moved since the command line, by the time of day or in a window; where it has not,
+ * the numbers are the command line's own. */
+static void save_sun(const cli_picture *v, const shape_light *light, shape_scene *scene)
+{
+    const double degrees = 57.295779513082321;
+    shape_dvec3 given = shape_sun_direction(v->sun[0], v->sun[1]), sun = light->sun;
+    memcpy(scene->sun, v->sun, sizeof v->sun);
+    if (given.x != sun.x || given.y != sun.y || given.z != sun.z) {
+        scene->sun[0] = atan2(sun.x, sun.z) * degrees;
+        scene->sun[1] = asin(fmax(-1, fmin(1, sun.y))) * degrees;
+    }
+    for (int i = 0; i < 3; i++) {
+        float shown = light->sun_irradiance[i];
+        scene->sun_irradiance[i] =
+            (float)v->sun_irradiance[i] == shown ? v->sun_irradiance[i] : (double)shown;
+    }
+}
+
 static void save_light(const cli_picture *v, const shape_light *light, shape_scene *scene)
 {
     scene->sun_none = false;
     scene->sun_given = scene->sun_irradiance_given = scene->sky_given = true;
-    memcpy(scene->sun, v->sun, sizeof v->sun);
-    memcpy(scene->sun_irradiance, v->sun_irradiance, sizeof v->sun_irradiance);
+    save_sun(v, light, scene);
     scene->sun_angle_given = v->sun_angle_given;
     scene->sun_angle = v->sun_angle;
     scene->lamp_given = v->lamp_given;

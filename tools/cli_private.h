@@ -27,6 +27,9 @@ void cli_record_option(const cli_option *option, const char *text);
 const cli_record *cli_record_now(void);
 cli_record *cli_record_use(cli_record *record);
 
+/* Keeps that an option was given; the text, NULL for a flag, lives as long as the program, or until it is given again. */
+void cli_note_given(const cli_option *option, const char *text);
+
 /* Puts an option's text into its variable, or ends the program: cli_wrong. text is "" for a flag, and must live as long
  * as the variable where that is a text. */
 void cli_store(const cli_option *option, const char *text);

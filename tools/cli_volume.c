@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -34,12 +33,6 @@ const cli_option cli_volume_options[] = {
      "memory that the volume may take, bytes [4294967296]", GIVEN(max_memory)},
     {0}};
 
-static bool has_suffix(const char *path, const char *suffix)
-{
-    size_t length = strlen(path), end = strlen(suffix);
-    return length > end && !strcasecmp(path + length - end, suffix);
-}
-
 /* The first bytes and how many there are; none of what can be read once only, a pipe. */
 static size_t read_start(const char *path, unsigned char *bytes, size_t room, size_t *whole)
 {
@@ -64,7 +57,7 @@ bool cli_is_volume(const char *path)
     size_t whole;
     if (!strcmp(path, "-"))
         return false;
-    if (has_suffix(path, ".vdb") || has_suffix(path, ".raw"))
+    if (cli_has_suffix(path, ".vdb") || cli_has_suffix(path, ".raw"))
         return true;
     size_t size = read_start(path, bytes, sizeof bytes, &whole);
     return shape_vdb_is(bytes, size) || (size == sizeof bytes && shape_volume_raw_is(bytes, whole));
@@ -145,7 +138,7 @@ shape_set *cli_read_volume(const char *path)
     shape_frame frame;
     unsigned char start[16], *bytes;
     size_t whole, size = read_start(path, start, sizeof start, &whole);
-    if (shape_vdb_is(start, size) || has_suffix(path, ".vdb"))
+    if (shape_vdb_is(start, size) || cli_has_suffix(path, ".vdb"))
         return make_set(path, read_vdb(path, path, &frame), &frame);
     cli_check(shape_file_read(path, (size_t)cli_volume_values.max_memory, &bytes, &size, &error), &error);
     shape_grid *grid = decode_raw(path, bytes, size, &frame);
@@ -212,9 +205,8 @@ cli_input cli_volume_input_read(const char *path)
 
 void cli_refuse_volume_options(void)
 {
-    const cli_option *tables[] = {cli_volume_options, cli_optics_options};
-    for (int i = 0; i < 2; i++)
-        for (const cli_option *option = tables[i]; option->name; option++)
-            if (*option->given)
-                cli_wrong("--%s belongs to volumes, .vdb or raw (for a .neph use neph-edit)", option->name);
+    const char *name = cli_given_of(cli_volume_options);
+    name = name ? name : cli_given_of(cli_optics_options);
+    if (name)
+        cli_wrong("--%s belongs to volumes, .vdb or raw (for a .neph use neph-edit)", name);
 }

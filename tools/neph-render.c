@@ -304,6 +304,14 @@ static void check_method(void)
         cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
 }
 
+/* What a scene would have to hold, and cannot. */
+static void check_save(const cli_common *common)
+{
+    cli_save_check(common);
+    if (cli_save_wanted() && render_opaque_given())
+        cli_wrong("--save-scene --mesh: a scene holds no meshes (leave one of them out)");
+}
+
 static void check_command(const cli_common *common)
 {
     if (common->argument_count != 1)
@@ -336,10 +344,12 @@ static void render(const cli_common *common)
     picture p;
     check_command(common);
     shape_image_format format = choose_format(common);
-    cli_save_check(common);
+    check_save(common);
     cli_input input = cli_volume_input_read(common->arguments[0]);
     const shape_set *set = input.set;
     use_scene(&input);
+    if (cli_given("lamp-intensity") && !cli_picture_values.lamp_given)
+        cli_wrong("--lamp-intensity: there is no lamp (give --lamp X,Y,Z)");
     shape_opaque *opaque = render_opaque_read();
     cli_picture_apply(set, &p.view, &p.light);
     p.image = make_image(&p.view, format);
@@ -399,6 +409,11 @@ static int compare_pictures(const cli_common *common)
 {
     shape_error error;
     shape_imageerror e;
+    for (const cli_group *group = groups; group->title; group++) {
+        const char *name = group->options == compare_options ? NULL : cli_given_of(group->options);
+        if (name)
+            cli_wrong("--%s has no meaning with --compare", name);
+    }
     if (common->argument_count != 2)
         cli_wrong("--compare takes two pictures");
     shape_image *a = read_image(common->arguments[0]), *b = read_image(common->arguments[1]);

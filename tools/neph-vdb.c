@@ -13,7 +13,6 @@
 
 enum { MAX_SET_FILE = 0x40000000 };
 
-static bool fit_given;
 vdb_values vdb = {.resolution = 256, .max_memory = 4294967296, .light_resolution = 48};
 
 static const cli_option size_options[] = {
@@ -64,9 +63,9 @@ static const cli_option fit_options[] = {
     {"primitives", 0, CLI_INTEGER, &cli_vdb_fit_values.primitives, 1, SHAPE_VOLUMEFIT_MAX_PRIMITIVES, "N",
      "at most so many [64; with --error 1000]", &cli_vdb_fit_values.primitives_given, false},
     {"model", 0, CLI_CHOICE, &cli_vdb_fit_values.model, 0, 0, "uniform|spheroid",
-     "of the cloud made: plain, or with noise at its edge [uniform]", &fit_given, false},
+     "of the cloud made: plain, or with noise at its edge [uniform]", NULL, false},
     {"cells", 0, CLI_INTEGER, &cli_vdb_fit_values.cells, 16, 512, "N",
-     "cells along the longest side that the fit looks at [80]", &fit_given, false},
+     "cells along the longest side that the fit looks at [80]", NULL, false},
     {"grid", 0, CLI_TEXT, &cli_volume_values.grid, 0, 0, "NAME", "which grid of a .vdb [the only scalar one]",
      &cli_volume_values.grid_given, false},
     {"density-gain", 0, CLI_NUMBER, &cli_volume_values.density_gain, 0, 1e9, "X",
@@ -97,24 +96,17 @@ static const cli_program program = {
     .max_arguments = 1,
     .groups = groups};
 
-static const char *suffix_of(const char *path)
-{
-    const char *dot = strrchr(path, '.'), *slash = strrchr(path, '/');
-    return dot && (!slash || dot > slash) ? dot : "";
-}
-
 static vdb_format choose_format(const cli_common *common)
 {
     if (vdb.format_given)
         return (vdb_format)vdb.format;
     if (!strcmp(common->output, "-"))
         return VDB_FORMAT_VDB;
-    const char *suffix = suffix_of(common->output);
-    if (!strcmp(suffix, ".vdb"))
+    if (cli_has_suffix(common->output, ".vdb"))
         return VDB_FORMAT_VDB;
-    if (!strcmp(suffix, ".nvdb"))
+    if (cli_has_suffix(common->output, ".nvdb"))
         return VDB_FORMAT_NVDB;
-    if (!strcmp(suffix, ".raw"))
+    if (cli_has_suffix(common->output, ".raw"))
         return VDB_FORMAT_RAW;
     cli_wrong("-o %s: the suffix is none of .vdb, .nvdb, .raw (or name a --format)", common->output);
     return VDB_FORMAT_VDB;
@@ -139,24 +131,25 @@ static void write_volume(const cli_common *common, const shape_set *set)
 {
     vdb_format format = choose_format(common);
     check_command(format, common);
-    if (cli_vdb_fit_values.primitives_given || fit_given)
-        cli_wrong("--primitives, --model and --cells belong to volumes that are read (%s holds clouds)",
-                  common->arguments[0]);
-    cli_refuse_volume_options();
+    const char *name = cli_given_of(fit_options);
+    name = name ? name : cli_given_of(cli_optics_options);
+    if (name)
+        cli_wrong("--%s belongs to volumes that are read (%s holds clouds)", name, common->arguments[0]);
     vdb_write_volume(common, set, format);
 }
 
 /* A volume to a cloud. bytes: NULL for a file, which is read by its path. */
 static void fit_volume(const cli_common *common, const unsigned char *bytes, size_t size)
 {
-    if (vdb.resolution_given || vdb.ramp_given || vdb.format_given || vdb.half || vdb.each || vdb.header ||
-        vdb.values || vdb.grids || vdb.light_resolution_given)
-        cli_wrong("--resolution, --ramp, --format, --half, --each, --header, --values, --grids and "
-                  "--light-resolution belong to volumes that are written (%s is one to be read)",
+    const char *output = common->output, *name = cli_given_of(value_options);
+    static const char *const others[] = {"resolution", "format", "half", "header"};
+    for (size_t i = 0; i < sizeof others / sizeof *others && !name; i++)
+        name = cli_given(others[i]) ? others[i] : NULL;
+    if (name)
+        cli_wrong("--%s belongs to volumes that are written (%s is one to be read)", name,
                   common->arguments[0]);
-    const char *suffix = suffix_of(common->output);
-    if (!strcmp(suffix, ".vdb") || !strcmp(suffix, ".nvdb") || !strcmp(suffix, ".raw"))
-        cli_wrong("-o %s: of a volume a .neph is made (name one)", common->output);
+    if (cli_has_suffix(output, ".vdb") || cli_has_suffix(output, ".nvdb") || cli_has_suffix(output, ".raw"))
+        cli_wrong("-o %s: of a volume a .neph is made (name one)", output);
     cli_volume_values.up = vdb.up == 0; /* the tables name the axes in another order */
     cli_volume_values.max_memory = (double)vdb.max_memory;
     if (vdb.voxel_size_given)
@@ -175,7 +168,7 @@ int main(int argc, char **argv)
     size_t size;
     cli_parse(&program, argc, argv, &common);
     const char *path = common.arguments[0];
-    if (!strcmp(suffix_of(path), ".nvdb"))
+    if (cli_has_suffix(path, ".nvdb"))
         cli_fail("%s: NanoVDB is written, not read (give the .vdb, or convert it by nanovdb_convert)", path);
     if (strcmp(path, "-") && cli_is_volume(path)) {
         fit_volume(&common, NULL, 0);

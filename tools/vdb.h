@@ -10,12 +10,11 @@ typedef enum vdb_format { VDB_FORMAT_VDB, VDB_FORMAT_NVDB, VDB_FORMAT_RAW } vdb_
 
 typedef struct vdb_values {
     double voxel_size, error, ramp;
-    int64_t resolution, max_memory, primitives, light_resolution;
+    int64_t resolution, max_memory, light_resolution;
     int up, values, format;
     bool half, each, header;
-    const char *grids, *grid;
-    bool voxel_size_given, resolution_given, error_given, ramp_given, primitives_given, grid_given,
-        format_given, light_resolution_given;
+    const char *grids;
+    bool voxel_size_given, resolution_given, error_given, ramp_given, format_given, light_resolution_given;
 } vdb_values;
 
 extern vdb_values vdb;

@@ -129,14 +129,17 @@ static bool add_maker(text_end *end, const view_state *state, const view_state *
     return piped;
 }
 
-static void add_light(text_end *end, const view_state *state)
+static void add_light(text_end *end, const view_state *state, bool scene)
 {
     if (!state->course.day_runs)
         add(end, " --sun %.9g,%.9g", state->sun[0], state->sun[1]);
     const float *sun = state->sun_irradiance, *sky = state->sky_radiance;
     shape_light usual = shape_light_defaults();
-    if (memcmp(sun, usual.sun_irradiance, sizeof usual.sun_irradiance))
+    /* A scene has its own, which the usual ones must be said to replace. */
+    if (scene || memcmp(sun, usual.sun_irradiance, sizeof usual.sun_irradiance))
         add(end, " --sun-irradiance %.9g,%.9g,%.9g", (double)sun[0], (double)sun[1], (double)sun[2]);
+    if (scene && state->sky == SHAPE_SKY_CLEAR)
+        add(end, " --sky clear");
     if (state->sky == SHAPE_SKY_NONE)
         add(end, " --sky none");
     else if (state->sky == SHAPE_SKY_CONSTANT)
@@ -149,17 +152,21 @@ void view_command_write(const view_state *state, const view_state *base, const v
     static const char *const methods[] = {"default", "exact", "paper", "paper-ndt"};
     text_end end = {text, 0, room};
     text[0] = 0;
-    bool made = add_maker(&end, state, base, command->path, command->grammar);
+    bool made = !command->volume && add_maker(&end, state, base, command->path, command->grammar);
     if (made)
         add(&end, " -o cloud.neph\n");
     add(&end, "neph-view");
     add_path(&end, made ? "cloud.neph" : command->path);
+    if (!made)
+        add(&end, "%s", command->opening);
+    if (command->volume && state->cloud_count)
+        add_knobs(&end, state, base, 0, true); /* after the options that opened it, so that these hold */
     add(&end, " --headless --size %dx%d --method %s", command->size[0], command->size[1],
         methods[state->method]);
     add_vector(&end, "eye", state->eye);
     add_vector(&end, "target", state->target);
     add(&end, " --fov %.9g --exposure %.9g", state->fov, (double)state->exposure);
-    add_light(&end, state);
+    add_light(&end, state, command->scene);
     view_state start;
     memcpy(&start, base, sizeof start);
     start.fov = state->fov; /* said already */
@@ -186,6 +193,8 @@ void view_command_write(const view_state *state, const view_state *base, const v
         add(&end, " --seed %llu", (unsigned long long)command->seed);
     if (command->alpha)
         add(&end, " --alpha");
+    if (command->paper_lod)
+        add(&end, " --paper-lod");
     if (state->time != 0)
         add(&end, " --time %.9g", state->time);
     add(&end, " -o cloud.png\n");

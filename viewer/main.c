@@ -69,8 +69,8 @@ static const cli_option motion_options[] = {
      "the clouds grow out of their bases in T seconds [they are there]", NULL, true},
     {"decay", 0, CLI_RANGE, decay_range, 0, 1e9, "A..B", "the clouds decay from second A to second B [never]",
      &decay_given, true},
-    {"morph", 0, CLI_TEXT, &morph_path, 0, 0, "OTHER", "the clouds become those of another file [none]", NULL,
-     true},
+    {"morph", 0, CLI_TEXT, &morph_path, 0, 0, "OTHER",
+     "the clouds become those of another .neph or grammar [none]", NULL, true},
     {"morph-time", 0, CLI_NUMBER, &course.morph_seconds, 1e-3, 1e9, "T", "in so many seconds [4]", NULL,
      true},
     {"day", 0, CLI_NUMBER, &course.day.hour, 0, 24, "HOUR",
@@ -167,6 +167,7 @@ static void print_bench(const view_job *job, shape_gl_costs costs, double first_
 static void bench(view_job *job, shape_gl_renderer *renderer, double started, const cli_common *common)
 {
     shape_error error;
+    shape_view view = job->view;
     double *times = calloc((size_t)bench_frames, sizeof *times), first = 0;
     size_t pixels = (size_t)job->view.width * (size_t)job->view.height;
     float *rgba = malloc(pixels * 4 * sizeof *rgba);
@@ -175,7 +176,7 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
     double steps = 0, fetches = 0;
     for (int64_t i = 0; i < bench_frames; i++) {
         double start = now_ms();
-        cli_check(shape_gl_draw_moving(renderer, &job->view, &error), &error);
+        cli_check(shape_gl_draw_moving(renderer, &view, &error), &error);
         shape_gl_finish();
         times[i] = now_ms() - start;
         if (i == 0)
@@ -185,14 +186,14 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
         steps += shape_gl_get_costs(renderer).steps_per_pixel;
         fetches += shape_gl_get_costs(renderer).fetches_per_pixel;
         if (i + 1 < bench_frames)
-            view_orbit(&job->view, 0.5);
+            view_orbit(&view, 0.5);
     }
     free(rgba);
     shape_gl_costs costs = shape_gl_get_costs(renderer);
     costs.steps_per_pixel = steps / (double)bench_frames;
     costs.fetches_per_pixel = fetches / (double)bench_frames;
     if (common->output_given)
-        write_picture(job, &job->view, renderer, common);
+        write_picture(job, &view, renderer, common);
     print_bench(job, costs, first, times, (int)bench_frames);
     free(times);
 }
@@ -220,10 +221,10 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     shape_error error;
     shape_gl_context *context;
     shape_gl_renderer *renderer;
-    shape_view view = job->view;
-    shape_light light = job->light;
-    view_course_view(&job->course, job->time, &view);
-    view_course_light(&job->course, job->time, &light);
+    view_course_view(&job->course, job->time, &job->view); /* so that --save-scene keeps what was drawn */
+    view_course_light(&job->course, job->time, &job->light);
+    const shape_view view = job->view;
+    const shape_light light = job->light;
     cli_check(shape_gl_context_create(&context, &error), &error);
     if (error_given) {
         draw_within(job, &view, &light, common);
@@ -269,7 +270,7 @@ static cli_input use_volume(view_job *job, view_contents *contents, cli_input *i
 {
     if (cli_save_wanted())
         cli_fail("%s: a scene holds no volume (make primitives of it by neph-vdb first)", job->path);
-    input->volume = true;
+    input->volume = job->volume_file = true;
     job->scene = true;
     contents->used = job->generator;
     return *input;
@@ -330,6 +331,20 @@ static void check_command(const cli_common *common, view_frames *frames)
         cli_wrong("--bench and --frames are two ways to draw (give one of them)");
     if (overwrite && !frames_given)
         cli_wrong("--overwrite needs --frames");
+    if (paper_lod && method < SHAPE_GL_PAPER)
+        cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
+    if (cli_given("fps") && !frames_given)
+        cli_wrong("--fps needs --frames");
+    for (const char *const *name = (const char *const[]){"day-speed", "latitude", "declination", NULL}; *name;
+         name++)
+        if (cli_given(*name) && !day_given)
+            cli_wrong("--%s needs --day", *name);
+    if (cli_given("morph-time") && !morph_path)
+        cli_wrong("--morph-time needs --morph");
+    if (samples_given && bench_given)
+        cli_wrong("--samples: --bench draws moving views, of one sample each");
+    if (morph_path && (cli_has_suffix(morph_path, ".json") || cli_is_volume(morph_path)))
+        cli_wrong("--morph %s: takes a .neph or a grammar", morph_path);
     if (frames_given && time_given)
         cli_wrong("--time is for one picture (frame N is the time N / --fps)");
     if (frames_given) {
@@ -342,7 +357,8 @@ static void check_command(const cli_common *common, view_frames *frames)
         frames->output = common->output;
         if (view_frames_check(frames, &error))
             cli_wrong("%s", error.text);
-    } else if (common->output_given && strcmp(common->output, "-")) {
+    }
+    if (common->output_given && strcmp(common->output, "-")) {
         shape_image_format format;
         if (shape_image_format_find(common->output, &format, &error))
             cli_wrong("%s", error.text);
@@ -364,6 +380,9 @@ static void plan(view_job *job, const cli_common *common)
     job->options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     job->samples = (int)samples;
     job->path = job->title = common->arguments[0];
+    cli_given_text(cli_volume_options, job->opening, sizeof job->opening);
+    cli_given_text(cli_optics_options, job->opening, sizeof job->opening);
+    cli_given_text(cli_scene_options + 1, job->opening, sizeof job->opening); /* --allow-outside */
     job->alpha = alpha;
     job->morph_path = morph_path;
     job->time = moment_time;

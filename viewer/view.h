@@ -21,8 +21,10 @@ typedef struct view_job {
     shape_gl_options options;
     const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
     view_generator generator;              /* of a grammar */
+    char opening[1024];                    /* options that belong to the file, as they were given */
     bool grammar, scene, alpha;
-    int samples; /* of a picture without a window, and of a window at rest */
+    bool volume_file; /* a .vdb or raw floats: nothing edits it */
+    int samples;      /* of a picture without a window, and of a window at rest */
     double load_ms;
     uint64_t seed; /* as given */
     double sun[2]; /* azimuth and height, degrees, as given */

@@ -273,8 +273,16 @@ static void hear_news(window_state *w)
 
 static void make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room)
 {
-    const view_command command = {w->job->path, w->job->morph_path, w->job->grammar,
-                                  alpha,        {size[0], size[1]}, w->job->options.seed};
+    const view_command command = {.path = w->job->path,
+                                  .morph = w->job->morph_path,
+                                  .opening = w->job->opening,
+                                  .grammar = w->job->grammar,
+                                  .alpha = alpha,
+                                  .paper_lod = w->job->options.paper_lod,
+                                  .volume = w->job->volume_file,
+                                  .scene = w->job->scene,
+                                  .size = {size[0], size[1]},
+                                  .seed = w->job->options.seed};
     view_command_write(&w->state, &w->base, &command, text, room);
 }
 
@@ -582,10 +590,6 @@ shape_status view_window(view_job *job, shape_error *error)
     if (w->window)
         glfwDestroyWindow(w->window);
     /* A saved scene looks as the window did. */
-    view_course still = w->state.course;
-    memset(&w->state.course, 0, sizeof w->state.course);
-    w->state.course.day_runs = still.day_runs;
-    w->state.course.day = still.day;
     job->view = view_state_view(&w->state, job->view.width, job->view.height);
     job->light = view_state_light(&w->state);
     free(w);
