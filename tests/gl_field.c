@@ -1,28 +1,6 @@
 /* The field in GLSL against the field in C, point by point: two independent ways, equal to 1e-4 except within 1e-4 of
  * where density jumps. Runs on whatever OpenGL there is; none is a failure. */
-#include "volume_sample.h"
-
-#include "shape_gl.h"
-
-static shape_gl_context *context;
-
-static int open_context(void **state)
-{
-    (void)state;
-    shape_error error;
-    if (shape_gl_context_create(&context, &error)) {
-        print_error("%s\n", error.text);
-        return -1;
-    }
-    return 0;
-}
-
-static int close_context(void **state)
-{
-    (void)state;
-    shape_gl_context_destroy(context);
-    return 0;
-}
+#include "gl_context.h"
 
 typedef struct sample_cloud {
     shape_model model;
@@ -119,10 +97,7 @@ static void compare(shape_gl_renderer *renderer, const sample_cloud *c, long *ex
 static void glsl_field_is_the_c_field(void **state)
 {
     (void)state;
-    shape_error error;
-    shape_gl_options options = shape_gl_defaults();
-    shape_gl_renderer *renderer;
-    must(shape_gl_create(&options, &renderer, &error), &error);
+    shape_gl_renderer *renderer = new_renderer(SHAPE_GL_DEFAULT);
     long excepted = 0, dense = 0;
     for (int i = 0; i < CLOUDS; i++)
         compare(renderer, &clouds[i], &excepted, &dense);

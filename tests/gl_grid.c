@@ -1,34 +1,12 @@
 /* Voxel grids in GLSL against C, point by point, and the exact view of one against the preview. Single precision on both
  * sides: 1e-5 of the largest density. */
+#include "gl_context.h"
 #include "grid_sample.h"
 
-#include "shape_gl.h"
-
-static shape_gl_context *context;
-
-static int open_context(void **state)
+/* Densities above 1. */
+static double dense_bumps(const void *unused, int x, int y, int z)
 {
-    (void)state;
-    shape_error error;
-    if (shape_gl_context_create(&context, &error)) {
-        print_error("%s\n", error.text);
-        return -1;
-    }
-    return 0;
-}
-
-static int close_context(void **state)
-{
-    (void)state;
-    shape_gl_context_destroy(context);
-    return 0;
-}
-
-static double bumps(const void *context_unused, int x, int y, int z)
-{
-    (void)context_unused;
-    bool face = !x || !y || !z || x >= 40 || y >= 32 || z >= 36;
-    return face ? 0 : 5 * fmax(sin(0.31 * x) * sin(0.23 * y + 1) * cos(0.27 * z), 0);
+    return 5 * bumps(unused, x, y, z);
 }
 
 static void glsl_samples_are_the_c_samples(void **state)
@@ -36,11 +14,8 @@ static void glsl_samples_are_the_c_samples(void **state)
     (void)state;
     enum { POINTS = 20000 };
     shape_error error;
-    shape_gl_options options = shape_gl_defaults();
-    shape_gl_renderer *renderer;
-    options.method = SHAPE_GL_EXACT;
-    must(shape_gl_create(&options, &renderer, &error), &error);
-    shape_set *set = grid_set(grid_of(bumps, NULL, 41, 33, 37), 0.1, shape_dvec3_make(1, 2, 3));
+    shape_gl_renderer *renderer = new_renderer(SHAPE_GL_EXACT);
+    shape_set *set = grid_set(grid_of(dense_bumps, NULL, 41, 33, 37), 0.1, shape_dvec3_make(1, 2, 3));
     shape_volume *volume = new_volume(set);
     const shape_volume_cloud *cloud = &volume->clouds[0];
     must(shape_gl_load(renderer, volume, &error), &error);
@@ -70,8 +45,7 @@ static double mean_of(const shape_volume *volume, shape_gl_method method)
 {
     enum { SIDE = 64 };
     shape_error error;
-    shape_gl_options options = shape_gl_defaults();
-    shape_gl_renderer *renderer;
+    shape_gl_renderer *renderer = new_renderer(method);
     shape_view view = shape_view_defaults();
     shape_light light = shape_light_defaults();
     light.sky = SHAPE_SKY_NONE;
@@ -79,8 +53,6 @@ static double mean_of(const shape_volume *volume, shape_gl_method method)
     view.fov = 20; /* a pixel is smaller than a voxel: the preview bakes no coarser */
     view.eye = shape_dvec3_make(3, 4, 15);
     view.target = shape_dvec3_make(3, 3.6, 4.8);
-    options.method = method;
-    must(shape_gl_create(&options, &renderer, &error), &error);
     must(shape_gl_load(renderer, volume, &error), &error);
     must(shape_gl_light(renderer, &light, &error), &error);
     for (int i = 0; i < 4; i++)
@@ -100,7 +72,7 @@ static double mean_of(const shape_volume *volume, shape_gl_method method)
 static void exact_and_preview_agree(void **state)
 {
     (void)state;
-    shape_set *set = grid_set(grid_of(bumps, NULL, 41, 33, 37), 0.1, shape_dvec3_make(1, 2, 3));
+    shape_set *set = grid_set(grid_of(dense_bumps, NULL, 41, 33, 37), 0.1, shape_dvec3_make(1, 2, 3));
     shape_volume *volume = new_volume(set);
     double exact = mean_of(volume, SHAPE_GL_EXACT), preview = mean_of(volume, SHAPE_GL_DEFAULT);
     assert_true(exact > 0.005);
@@ -114,11 +86,8 @@ static void paper_methods_refuse_grids(void **state)
 {
     (void)state;
     shape_error error;
-    shape_gl_options options = shape_gl_defaults();
-    shape_gl_renderer *renderer;
-    options.method = SHAPE_GL_PAPER;
-    must(shape_gl_create(&options, &renderer, &error), &error);
-    shape_set *set = grid_set(grid_of(bumps, NULL, 41, 33, 37), 0.1, shape_dvec3_make(1, 2, 3));
+    shape_gl_renderer *renderer = new_renderer(SHAPE_GL_PAPER);
+    shape_set *set = grid_set(grid_of(dense_bumps, NULL, 41, 33, 37), 0.1, shape_dvec3_make(1, 2, 3));
     shape_volume *volume = new_volume(set);
     assert_int_equal(shape_gl_load(renderer, volume, &error), SHAPE_ERROR_ARGUMENT);
     assert_non_null(strstr(error.text, "primitives"));

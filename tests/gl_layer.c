@@ -1,28 +1,6 @@
 /* Layers and details in GLSL against C, point by point: two independent ways, equal to 1e-4 except where density jumps,
  * which shows as a jump in C itself within 1e-4 of the point's distance to its neighbours. */
-#include "volume_sample.h"
-
-#include "shape_gl.h"
-
-static shape_gl_context *context;
-
-static int open_context(void **state)
-{
-    (void)state;
-    shape_error error;
-    if (shape_gl_context_create(&context, &error)) {
-        print_error("%s\n", error.text);
-        return -1;
-    }
-    return 0;
-}
-
-static int close_context(void **state)
-{
-    (void)state;
-    shape_gl_context_destroy(context);
-    return 0;
-}
+#include "gl_context.h"
 
 enum { POINTS = 6000 };
 
@@ -77,15 +55,6 @@ static void compare(shape_gl_renderer *renderer, const shape_set *set, const cha
     shape_volume_destroy(volume);
 }
 
-static shape_gl_renderer *new_renderer(void)
-{
-    shape_error error;
-    shape_gl_options options = shape_gl_defaults();
-    shape_gl_renderer *renderer;
-    must(shape_gl_create(&options, &renderer, &error), &error);
-    return renderer;
-}
-
 static void details_agree(void **state)
 {
     (void)state;
@@ -103,7 +72,7 @@ static void details_agree(void **state)
         {"billow, spheroid", SHAPE_MODEL_SPHEROID, {.billow = 0.5f, .detail_depth = 0.8f}},
         {"wisp, metaball", SHAPE_MODEL_METABALL, {.wisp = 0.7f}},
         {"all, spheroid", SHAPE_MODEL_SPHEROID, {0.2f, 0.3f, 2, 0.4f, 0.5f, 0.3f, 0.6f}}};
-    shape_gl_renderer *renderer = new_renderer();
+    shape_gl_renderer *renderer = new_renderer(SHAPE_GL_DEFAULT);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         shape_set *set = new_set();
         shape_cloud *cloud = new_cloud(set, cases[i].model);
@@ -121,7 +90,7 @@ static void details_agree(void **state)
 static void layers_agree(void **state)
 {
     (void)state;
-    shape_gl_renderer *renderer = new_renderer();
+    shape_gl_renderer *renderer = new_renderer(SHAPE_GL_DEFAULT);
     static const char *const what[] = {"layer, lattice",       "layer, Perlin",         "layer, Worley",
                                        "layer, Perlin-Worley", "layer, hard steps",     "layer, shell",
                                        "layer, displaced",     "layer, displaced shell"};

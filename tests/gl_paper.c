@@ -2,32 +2,11 @@
  * the same steps in single precision with one filter of the noise; they differ by rounding, which now and then turns a
  * step at the threshold n < gamma to the other side, worth at most a step's share of a pixel (Mesa's software rasteriser:
  * root mean square 2e-6). The tolerance leaves room for GPUs, which filter with weights of 8 bits. */
-#include "volume_sample.h"
+#include "gl_context.h"
 
 #include "shape/paper.h"
-#include "shape_gl.h"
 
 enum { W = 64, H = 36, N = W * H };
-
-static shape_gl_context *context;
-
-static int open_context(void **state)
-{
-    (void)state;
-    shape_error error;
-    if (shape_gl_context_create(&context, &error)) {
-        print_error("%s\n", error.text);
-        return -1;
-    }
-    return 0;
-}
-
-static int close_context(void **state)
-{
-    (void)state;
-    shape_gl_context_destroy(context);
-    return 0;
-}
 
 static void draw_by_gl(const shape_volume *volume, const shape_view *view, const shape_light *light,
                        const shape_paper_options *options, float *rgba)

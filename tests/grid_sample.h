@@ -45,4 +45,30 @@ static inline shape_set *grid_set(shape_grid *grid, double edge, shape_dvec3 at)
     return set;
 }
 
+/* --- formulas --- */
+
+/* Smooth, with empty parts, and nothing at the faces of a grid of 41 x 33 x 37. */
+static inline double bumps(const void *context, int x, int y, int z)
+{
+    (void)context;
+    bool face = !x || !y || !z || x >= 40 || y >= 32 || z >= 36;
+    return face ? 0 : fmax(sin(0.31 * x) * sin(0.23 * y + 1) * cos(0.27 * z), 0);
+}
+
+/* A cloud, sampled at points that stand `edge` apart, the first at `at`. */
+typedef struct sampled_cloud {
+    const shape_volume_cloud *cloud;
+    double edge;
+    shape_dvec3 at;
+} sampled_cloud;
+
+/* Its context is a sampled_cloud. */
+static inline double of_cloud(const void *context, int x, int y, int z)
+{
+    const sampled_cloud *s = context;
+    return (double)shape_cloud_density(s->cloud, shape_vec3_make((float)(s->at.x + s->edge * x),
+                                                                 (float)(s->at.y + s->edge * y),
+                                                                 (float)(s->at.z + s->edge * z)));
+}
+
 #endif

@@ -19,14 +19,6 @@ static double ramp(const void *context, int x, int y, int z)
     return 1 + 2 * x + 3 * y + 5 * z;
 }
 
-/* Smooth, with empty parts, and nothing at the faces of a grid of 41 x 33 x 37. */
-static double bumps(const void *context, int x, int y, int z)
-{
-    (void)context;
-    bool face = !x || !y || !z || x >= 40 || y >= 32 || z >= 36;
-    return face ? 0 : fmax(sin(0.31 * x) * sin(0.23 * y + 1) * cos(0.27 * z), 0);
-}
-
 /* A trilinear sample of a linear function is that function, but for rounding: 1e-6 of its largest value. */
 static void samples_of_a_ramp_are_the_ramp(void **state)
 {
@@ -171,21 +163,6 @@ static void slab_lets_through_what_beer_says(void **state)
     shape_set_destroy(set);
 }
 
-/* What a spheroid cloud's voxels hold is what the cloud has there, to the float. */
-typedef struct sampled_cloud {
-    const shape_volume_cloud *cloud;
-    double edge;
-    shape_dvec3 at;
-} sampled_cloud;
-
-static double of_cloud(const void *context, int x, int y, int z)
-{
-    const sampled_cloud *s = context;
-    return (double)shape_cloud_density(s->cloud, shape_vec3_make((float)(s->at.x + s->edge * x),
-                                                                 (float)(s->at.y + s->edge * y),
-                                                                 (float)(s->at.z + s->edge * z)));
-}
-
 static shape_set *heap(shape_model model)
 {
     shape_random random = shape_random_seed(6, 0);
@@ -195,6 +172,7 @@ static shape_set *heap(shape_model model)
     return set;
 }
 
+/* What a spheroid cloud's voxels hold is what the cloud has there, to the float. */
 static void grid_of_a_cloud_equals_it(void **state)
 {
     (void)state;

@@ -1,13 +1,6 @@
-/* Reading when memory runs out: each allocation of decoding a .neph, a raw volume and a mesh, and of making them ready to be looked at, fails once; it is reported as such, and nothing is left behind. */
-#include <errno.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
+/* Reading when memory runs out: each allocation of decoding a .neph, a raw volume and a mesh, and of making them ready to
+ * be looked at, fails once; it is reported as such, and nothing is left behind. */
+#include "failing_memory.h"
 
 #include "shape/gaussian.h"
 #include "shape/grid.h"
@@ -15,87 +8,6 @@
 #include "shape/mesh.h"
 #include "shape/neph.h"
 #include "shape/volume.h"
-
-/* The build links this program with --wrap, so that every allocation passes here. */
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *old, size_t size);
-int __real_posix_memalign(void **block, size_t alignment, size_t size);
-void __real_free(void *block);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *old, size_t size);
-int __wrap_posix_memalign(void **block, size_t alignment, size_t size);
-void __wrap_free(void *block);
-
-static long allocations_left = -1; /* below 0: no limit */
-static long live;                  /* blocks */
-
-static int refuse(void)
-{
-    return allocations_left >= 0 && allocations_left-- == 0;
-}
-
-void *__wrap_malloc(size_t size)
-{
-    void *block = refuse() ? NULL : __real_malloc(size);
-    live += block != NULL;
-    return block;
-}
-
-void *__wrap_calloc(size_t count, size_t size)
-{
-    void *block = refuse() ? NULL : __real_calloc(count, size);
-    live += block != NULL;
-    return block;
-}
-
-void *__wrap_realloc(void *old, size_t size)
-{
-    void *block = refuse() ? NULL : __real_realloc(old, size);
-    live += block && !old;
-    return block;
-}
-
-int __wrap_posix_memalign(void **block, size_t alignment, size_t size)
-{
-    int code = refuse() ? ENOMEM : __real_posix_memalign(block, alignment, size);
-    live += !code;
-    return code;
-}
-
-void __wrap_free(void *block)
-{
-    live -= block != NULL;
-    __real_free(block);
-}
-
-typedef shape_status (*work)(shape_error *error);
-
-/* Fails the first allocation of the work, then the second, and so on, until it needs no more; at least so many must be
- * seen. `spared` of them the work can do without: memory given back. */
-static void fail_each(work run, long at_least, int spared)
-{
-    long before = live, failures = 0;
-    for (;; failures++) {
-        shape_error error = {0};
-        allocations_left = failures;
-        shape_status status = run(&error);
-        int used_up = allocations_left < 0;
-        allocations_left = -1;
-        assert_int_equal(live, before);
-        if (!status && !used_up)
-            break;
-        if (!status) {
-            assert_true(spared-- > 0);
-            continue;
-        }
-        assert_int_equal(status, SHAPE_ERROR_MEMORY);
-        assert_non_null(strstr(error.text, "memory"));
-        assert_true(failures < 10000);
-    }
-    assert_true(failures >= at_least);
-}
 
 static unsigned char *neph;
 static size_t neph_size;

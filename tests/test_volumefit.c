@@ -5,20 +5,6 @@
 #include "shape/gaussian.h"
 #include "shape/volumefit.h"
 
-typedef struct sampled_cloud {
-    const shape_volume_cloud *cloud;
-    double edge;
-    shape_dvec3 at;
-} sampled_cloud;
-
-static double of_cloud(const void *context, int x, int y, int z)
-{
-    const sampled_cloud *s = context;
-    return (double)shape_cloud_density(s->cloud, shape_vec3_make((float)(s->at.x + s->edge * x),
-                                                                 (float)(s->at.y + s->edge * y),
-                                                                 (float)(s->at.z + s->edge * z)));
-}
-
 /* The first cloud of a set as a grid of that many voxels along its longest side. */
 static shape_set *voxels_of(const shape_set *set, int voxels)
 {
