@@ -92,6 +92,19 @@ line" '$(touch x)'; do
     "$bin/neph-render" -q "./$name.vdb" --size 16x9 --spp 1 -o "./$name.vdb.png" ||
         fail "neph-render does not read \"$name.vdb\""
 done
+# The same without a folder before it, so that the dash does reach the programs: --output= and what follows -- are names.
+"$bin/neph-gauss" -q --sigma 2.5,1.5,0.5 --extinction 0.5 --output=-bare.neph
+"$bin/neph-edit" -q --prune -o -bare-edited.neph -- -bare.neph
+"$bin/neph-info" --json -- -bare-edited.neph > ./-bare.json || fail "neph-info does not read \"-bare-edited.neph\""
+"$bin/neph-render" -q --size 16x9 --spp 1 --output=-bare.png -- -bare.neph
+cp torus.obj ./-bare.obj
+"$bin/neph-mesh" -q --faces 40 --output=-bare-mesh.neph -- -bare.obj || fail "neph-mesh does not read \"-bare.obj\""
+cmp -s gauss.neph ./-bare.neph || fail "\"-bare.neph\" has other bytes"
+for made in -bare-edited.neph -bare.json -bare.png -bare-mesh.neph; do
+    [ -s "./$made" ] || fail "there is no \"$made\""
+    count=$((count + 1))
+done
+"$bin/neph-info" --json -bare.neph > /dev/null 2>&1 && fail "-bare.neph is read as a name without --"
 # What says nothing about the name of the file: its folder. What stays of the name is UTF-8.
 "$bin/neph-info" --json "./$bad-edited.neph" | python3 -c 'import json, sys; json.load(sys.stdin.buffer)' ||
     fail "a name that is no UTF-8 makes JSON that is none"

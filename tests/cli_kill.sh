@@ -1,6 +1,6 @@
-# Nothing lost: every writing program is killed at random moments (kill_at_random.py), and runs against a full disk, a
-# folder that may not be written, pipes and streams that are closed, and an input that ends early. A file is whole or not
-# there, a failure is one line and exit code 1, and no temporary file is left.
+# Nothing lost: every writing program but neph-chart is killed at random moments (kill_at_random.py), and runs against a full
+# disk, a folder that may not be written, pipes and streams that are closed, and an input that ends early. A file is whole or
+# not there, a failure is one line and exit code 1, and no temporary file is left.
 # $1: programs, $2: source folder, $3: kills (60).
 set -eu
 bin=$(cd "$1" && pwd)
@@ -30,7 +30,8 @@ mesh=$source/examples/meshes/suzanne.ply
 fog=$source/tests/frozen/vdb/fog.vdb
 "$bin/neph-gauss" -q --count 12 -o cloud.neph
 "$bin/neph-gauss" -q --count 30000 --no-hollow --no-prune -o big.neph
-# Every writing program, by the file that it makes: the bytes of each are more than a pipe takes before its reader ends.
+# Every writing program but neph-chart, by the file that it makes. What gauss, meta, edit and info write is more than a pipe
+# takes before its reader ends.
 write() { # write NAME OPTIONS...: standard input is closed, so that nothing waits for it
     name=$1
     shift
@@ -43,16 +44,19 @@ write() { # write NAME OPTIONS...: standard input is closed, so that nothing wai
     edit) set -- "$bin/neph-edit" -q big.neph --scale 2,2,2 "$@" ;;
     info) set -- "$bin/neph-info" --csv big.neph "$@" ;;
     vdb) set -- "$bin/neph-vdb" -q "$fog" --cells 16 --primitives 3 "$@" ;;
+    vdb-out) set -- "$bin/neph-vdb" -q cloud.neph --resolution 32 "$@" ;;
+    view) set -- "$bin/neph-view" -q cloud.neph --headless --size 64x36 --samples 1 --light-grid 4 "$@" ;;
     render) set -- "$bin/neph-render" -q cloud.neph --size 64x36 --spp 1 "$@" ;;
     esac
     "$@" 2> err < /dev/null
 }
-writers="gauss lsys meta layer mesh edit info render"
+writers="gauss lsys meta layer mesh edit info vdb-out render view"
 [ "$kills" -lt 200 ] || writers="$writers vdb" # which takes a second
 suffix() {
     case $1 in
     info) echo csv ;;
-    render) echo png ;;
+    vdb-out) echo vdb ;;
+    render | view) echo png ;;
     *) echo neph ;;
     esac
 }
@@ -118,7 +122,7 @@ done
 
 # --- closed streams: no file of ours takes their place
 for name in $writers; do
-    [ $name != render ] || continue
+    case $name in render | view) continue ;; esac
     code=0
     write $name >&- || code=$?
     refused "neph-$name without standard output" $code

@@ -1,6 +1,6 @@
 # Limits (docs/limits.md) hold before memory is taken: files that declare far more than they hold, and commands that ask
 # for too much, end with a line and exit code 1 (2 where an option is out of its range), within 700 MB of address space
-# (ulimit -v) and ten seconds.
+# (ulimit -v) and ten seconds of a processor (ulimit -t: on a busy machine a minute may pass).
 # $1: programs, $2: source folder.
 set -eu
 bin=$(cd "$1" && pwd)
@@ -32,7 +32,7 @@ refused() {
     program=$3
     shift 3
     code=0
-    ($limit && exec timeout 10 "$bin/$program" "$@") > out 2> err < /dev/null || code=$?
+    (ulimit -t 10 && $limit && exec timeout 60 "$bin/$program" "$@") > out 2> err < /dev/null || code=$?
     [ $code = "$wanted" ] || fail "$program $*: exit code $code, not $wanted"
     grep -q -e "$pattern" err || fail "$program $*: its line does not say \"$pattern\""
     ! grep -v "^$program: " err || fail "$program $*: a line that is not its own"
@@ -40,6 +40,7 @@ refused() {
     count=$((count + 1))
 }
 
+"$bin/neph-layer" -q -o layer.neph
 python3 - "$source" << 'END'
 import json, os, struct, sys, zlib
 
@@ -52,14 +53,49 @@ def sparse(name, start, size):
         file.write(start)
         file.truncate(size)
 
-# .neph: huge counts with right CRCs (layout: docs/neph-format.md), and a sparse file of 5 GiB
+# .neph (layout: docs/neph-format.md): a sparse file of 5 GiB, and huge numbers in fields of the header, of a row of the table
+# and of chunks. The CRCs are made right, so that the number itself is what is met.
 with open(sys.argv[1] + "/tests/frozen/v1.0-two-clouds.neph", "rb") as file:
     good = file.read()
+with open("layer.neph", "rb") as file:
+    layer = file.read()
 sparse("sparse.neph", good, 5 << 30)
-for name, at in (("claim-%d.neph" % i, i) for i in range(8, 32, 4)):
-    data = bytearray(good)
-    struct.pack_into("<I", data, at, 0xFFFFFFF0)
-    write(name, data)
+
+def rows(data):
+    return range(32, 32 + 32 * struct.unpack_from("<I", data, 12)[0], 32)
+
+def renew(data):
+    for row in rows(data):
+        start, length = struct.unpack_from("<QQ", data, row + 16)
+        struct.pack_into("<I", data, row + 12, zlib.crc32(data[start:start + length]))
+    end = rows(data)[-1] + 32
+    struct.pack_into("<I", data, end, zlib.crc32(data[:end]))
+
+def start_of(data, kind):
+    return next(struct.unpack_from("<Q", data, row + 16)[0] for row in rows(data) if data[row:row + 4] == kind)
+
+def claim(name, whole, at, crc=True, form="<I", value=0xFFFFFFF0):
+    data = bytearray(whole)
+    struct.pack_into(form, data, at, value)
+    if crc:
+        renew(data)
+    write("claim-%s.neph" % name, data)
+
+clouds = start_of(good, b"CLUD")
+claim("chunks", good, 12, crc=False) # the table's end, and so its CRC's place, would be beyond the file
+claim("size", good, 16, form="<Q", value=0xFFFFFFFFFFFFFFF0)
+claim("record", good, clouds)
+claim("clouds", good, clouds + 4)
+claim("lists", good, clouds + 8)
+claim("list", good, clouds + 16 + 136)
+claim("name", good, clouds + 16 + 144)
+claim("layers", layer, start_of(layer, b"LAYR") + 4)
+# Of a chunk's place only the table's CRC can be made right.
+data = bytearray(good)
+struct.pack_into("<Q", data, 32 + 24, 0xFFFFFFFFFFFFFFF0)
+end = rows(data)[-1] + 32
+struct.pack_into("<I", data, end, zlib.crc32(data[:end]))
+write("claim-length.neph", data)
 
 # pictures: 16,000 x 16,000 pixels in a hundred bytes
 def chunk(kind, data):
@@ -70,7 +106,8 @@ write("huge.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT",
 header = struct.pack(">IIBBBBB", 0x7FFFFFFF, 0x7FFFFFFF, 16, 6, 0, 0, 0)
 write("wide.png", b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"0")) + chunk(b"IEND", b""))
 write("huge.pfm", b"PF\n16384 16384\n-1.0\n" + bytes(12))
-write("wide.pfm", b"PF\n2000000000 2000000000\n-1.0\n" + bytes(12))
+write("wide.pfm", b"PF\n999999 999999\n-1.0\n" + bytes(12))
+write("digits.pfm", b"PF\n2000000000 2000000000\n-1.0\n" + bytes(12))
 
 # raw volumes
 sparse("big.raw", struct.pack("<3I", 2000, 2000, 1000), 12 + 4 * 2000 * 2000 * 1000)
@@ -99,7 +136,9 @@ def gltf(name, **changes):
 
 gltf("count.gltf", accessors=[{"bufferView": 0, "componentType": 5126, "count": 2000000000, "type": "VEC3"}])
 gltf("zeros.gltf", accessors=[{"componentType": 5126, "count": 2000000000, "type": "VEC3"}])
-gltf("buffer.gltf", buffers=[{"byteLength": 4000000000, "uri": "data:application/octet-stream;base64,AAAA"}])
+gltf("buffer.gltf", buffers=[{"byteLength": 4000000000, "uri": "small.bin"}])
+gltf("view.gltf", bufferViews=[{"buffer": 0, "byteLength": 4000000000}])
+write("small.bin", bytes(36))
 gltf("file.gltf", buffers=[{"byteLength": 36, "uri": "sparse.bin"}])
 gltf("outside.gltf", buffers=[{"byteLength": 36, "uri": "../../etc/passwd"}])
 sparse("sparse.bin", b"", 5 << 30)
@@ -107,14 +146,21 @@ write("deep.gltf", b"[" * 100000)
 write("deep.json", b'{"clouds": ' + b"[" * 100000)
 
 # scenes
-write("copies.json", b'{"scene": 1, "clouds": [' + b",".join(
-    b'{"generator": "neph-gauss", "options": {"count": 10000000}, "at": [%d,0,0]}' % i for i in range(40)) + b"]}")
+def scene(name, clouds):
+    write(name, json.dumps({"scene": 1, "clouds": clouds}).encode())
+
+heap = {"generator": "neph-gauss", "options": {"count": 10000, "no-hollow": True, "no-prune": True}}
+# Copies that are only moved share their primitives; stretched ones do not.
+scene("copies.json", [dict(heap, scale=[1, 2, 1], copies=[{"translate": [i, 0, 0]} for i in range(1001)])])
+scene("places.json", [dict(heap, copies=[{}] * 100001)])
+scene("values.json", [dict(heap, copies=[{"translate": [0, 0, 0]}] * 100001)])
+sparse("long.json", b"{", 17 << 20)
 sparse("sparse.json", b"{", 5 << 30)
 
 # grammars
 write("grow.lsys", b"axiom X\niterations 100000\nX -> X X\n")
 write("parameters.lsys", b"axiom A(" + b",".join([b"1"] * 1000) + b")\n")
-write("brackets.lsys", b"axiom X\niterations 100000\nX -> [ X\n")
+write("brackets.lsys", b"axiom X\niterations 60000\nX -> [ [ X ] ]\n")
 write("quiet.lsys", b"axiom x\niterations 100\nx -> x x\n")
 sparse("sparse.lsys", b"axiom X\n", 5 << 30)
 
@@ -127,41 +173,65 @@ for i, at in enumerate((45, 60, 100)):
     write("damaged%d.vdb" % i, data)
 END
 
-refused 1 "limit of" neph-info sparse.neph
-refused 1 "limit of" neph-edit sparse.neph -o x.neph
-for file in claim-*.neph; do
-    refused 1 "$file" neph-info "$file"
-done
+refused 1 "limit of 1073741824" neph-info sparse.neph
+refused 1 "limit of 1073741824" neph-edit sparse.neph -o x.neph
+# claim NAME REASON
+claim() { refused 1 "claim-$1.neph: .*$2" neph-info "claim-$1.neph"; }
+claim chunks "the number of chunks does not fit"
+claim size "of 18446744073709551600"
+claim length "chunk 0 (CLUD.* is not where it must be"
+claim record "records of a size that it must not have"
+claim clouds "declares a number of clouds that it does not hold"
+claim lists "declares lists that are not those there"
+claim list "names a list that is not there"
+claim name "its name is not"
+claim layers "LAYR.*declares a number of records that it does not hold"
 "$bin/neph-gauss" -q --count 3 -o good.neph
-for file in huge.png wide.png huge.pfm wide.pfm; do
-    refused 1 "$file" neph-render --compare "$file" "$file"
-done
-refused 2 "16384" neph-render good.neph --size 20000x20000 -o x.png
-refused 1 "memory" neph-render good.neph --size 16384x16384 --spp 1 -o x.png
-refused 1 "limit of" neph-vdb big.raw -o x.neph
-refused 1 "big.raw\|memory" neph-vdb big.raw --max-memory 1000000000000 -o x.neph
-refused 1 "has .* bytes" neph-vdb claim.raw -o x.neph
-refused 1 "65534" neph-vdb wide.raw -o x.neph
-for file in damaged*.vdb; do
-    refused 1 "$file" neph-vdb "$file" -o x.neph
-done
-for file in vertices.ply faces.ply corners.ply claim.stl claim.off corner.obj count.gltf zeros.gltf buffer.gltf \
-    outside.gltf deep.gltf; do
-    refused 1 "$file" neph-mesh "$file" -o x.neph
-done
-refused 1 "limit of" neph-mesh sparse.obj -o x.neph
-refused 1 "sparse.bin" neph-mesh file.gltf -o x.neph
-for file in deep.json sparse.json copies.json; do
-    refused 1 "$file" neph-info "$file"
-done
-refused 1 "limit of" neph-lsys sparse.lsys -o x.neph
-refused 1 "primitives" neph-lsys grow.lsys -o x.neph
-refused 1 "memory\|primitives" neph-lsys grow.lsys --max-primitives 1000000000000 -o x.neph
-for file in parameters brackets; do
-    refused 1 "$file.lsys" neph-lsys $file.lsys -o x.neph
-done
-refused 2 "10000000" neph-gauss --count 10000001 -o x.neph
-refused 2 "100000000" neph-gauss --count 10000000 --no-hollow --no-prune --field 100 -o x.neph
-refused 2 "100000" neph-meta --count 100001 -o x.neph
+picture() { refused 1 "$1: .*$2" neph-render --compare "$1" "$1"; }
+picture huge.png "so few bytes cannot hold so many pixels"
+picture wide.png "Invalid IHDR"
+picture huge.pfm "has 12 bytes of pixels and needs 3221225472"
+picture wide.pfm "999999x999999 pixels: each side must be from 1 to 16384"
+picture digits.pfm "not a PFM header"
+refused 2 "from 1 to 16384" neph-render good.neph --size 20000x20000 -o x.png
+refused 1 "not enough memory" neph-render good.neph --size 16384x16384 --spp 1 -o x.png
+refused 1 "limit of 4294967296" neph-vdb big.raw -o x.neph
+refused 1 "not enough memory" neph-vdb big.raw --max-memory 1000000000000 -o x.neph
+refused 1 "has 1125796830773228 bytes, not 28" neph-vdb claim.raw -o x.neph
+refused 1 "from 1 to 65534" neph-vdb wide.raw -o x.neph
+refused 1 "damaged0.vdb: holds no grid at all" neph-vdb damaged0.vdb -o x.neph
+refused 1 "damaged1.vdb: reading it takes more than" neph-vdb damaged1.vdb -o x.neph
+refused 1 "damaged2.vdb: OpenVDB cannot read it" neph-vdb damaged2.vdb -o x.neph
+mesh() { refused 1 "$1: .*$2" neph-mesh "$1" -o x.neph; }
+mesh vertices.ply "ends within its data"
+mesh faces.ply "ends within its data"
+mesh corners.ply "ends within its data"
+mesh claim.stl "says 4294967295 facets, its 134 bytes hold 1"
+refused 1 "claim.off:4:1: a finite number is missing" neph-mesh claim.off -o x.neph
+refused 1 "corner.obj:4:7: a face names vertex 4294967294 of 3" neph-mesh corner.obj -o x.neph
+mesh count.gltf "more than 33554432 positions"
+mesh zeros.gltf "more than 33554432 positions"
+mesh buffer.gltf "small.bin, requestedBytes 4000000000, but got 36"
+mesh view.gltf "bufferView 0 reaches beyond its buffer of 36 bytes"
+mesh outside.gltf "outside its own folder"
+mesh deep.gltf "deeper than 200"
+mesh sparse.obj "limit of 1073741824"
+mesh file.gltf "sparse.bin: larger than the limit of 1073741824"
+json() { refused 1 "$1: .*$2" neph-info "$1"; }
+json deep.json "more than 8 objects and arrays"
+json copies.json "more than 10000000 primitives"
+json places.json "more than 100000 clouds"
+json values.json "more than 500000 values"
+json long.json "limit of 16777216"
+json sparse.json "limit of 1073741824"
+refused 1 "limit of 1048576" neph-lsys sparse.lsys -o x.neph
+refused 1 "more than 1000000 primitives" neph-lsys grow.lsys -o x.neph
+refused 1 "not enough memory" neph-lsys grow.lsys --max-primitives 1000000000000 -o x.neph
+refused 1 "more than [0-9]* symbols" neph-lsys quiet.lsys -o x.neph
+refused 1 "parameters.lsys:1:7: A has more than 16 arguments" neph-lsys parameters.lsys -o x.neph
+refused 1 "open brackets is 100001" neph-lsys brackets.lsys -o x.neph
+refused 2 "from 1 to 10000000" neph-gauss --count 10000001 -o x.neph
+refused 2 "more than 100000000 spheres" neph-gauss --count 10000000 --no-hollow --no-prune --field 100 -o x.neph
+refused 2 "from 1 to 100000" neph-meta --count 100001 -o x.neph
 [ ! -e x.neph ] && [ ! -e x.png ] || fail "something that was refused made a file"
 echo "cli_limits: $count refused"

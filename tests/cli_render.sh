@@ -37,15 +37,15 @@ cmp -s a.exr other.exr && fail "another seed makes the same picture"
 
 # The same radiance in both formats; another seed differs by noise, another sun by more.
 "$bin/neph-render" --compare a.exr c.pfm --tolerance 0 >same.json || fail "EXR and PFM differ"
-grep -q '"relmse": 0' same.json || fail "equal pictures have an error"
+grep -q '^  "relmse": 0\.0,$' same.json || fail "equal pictures have an error"
 "$bin/neph-render" --compare a.exr other.exr --tolerance 1e-9 -o heat.png >/dev/null 2>err && fail "--tolerance does not bite"
 grep -q tolerance err || fail "--tolerance says nothing"
 [ -s heat.png ] || fail "no heat map"
 "$bin/neph-render" -q c.neph $small --sky none --sun-irradiance 0,0,0 -o dark.pfm
 "$bin/neph-render" -q c.neph $small --sky 1,1,1 --sun-irradiance 0,0,0 -o white.pfm --stats >white.json
-sed -n '/"mean"/,/]/p' white.json | grep -q '^ *1.0' || fail "a white furnace is not white"
+[ "$(sed -n '/"mean"/,/]/p' white.json | tr -d '\n ')" = '"mean":[1.0,1.0,1.0],' ] || fail "a white furnace is not white"
 "$bin/neph-render" --compare dark.pfm white.pfm >dark.json
-grep -q '"rmse": 1.0' dark.json || fail "darkness and a white furnace are not 1 apart"
+grep -q '^  "rmse": 1\.0,$' dark.json || fail "darkness and a white furnace are not 1 apart"
 # --noise stops early, and goes on when it is asked for less.
 "$bin/neph-render" -q c.neph --size 16x9 --spp 4096 --noise 0.3 -o n.exr --stats >rough.json
 "$bin/neph-render" -q c.neph --size 16x9 --spp 4096 --error 0.05 -o n.exr --stats >fine.json
@@ -152,9 +152,15 @@ code=0
 [ "$code" -eq 1 ] || fail "a picture as a mesh ended with $code, not 1"
 grep -q "c.pfm: not a mesh" err || fail "a picture as a mesh: $(cat err)"
 
-# The light grid has all scatterings; the reference's mean, at 64 paths a pixel, is within a tenth.
+# The light grid has all scatterings; the reference's mean, at 64 paths a pixel, is within a tenth (of single scattering it
+# is a fifth off). Pixel by pixel most of the 0.021 is the reference's noise; single scattering has 0.10.
 "$bin/neph-render" -q c.neph --size 32x18 --spp 64 -o truth.exr
-"$bin/neph-render" --compare grid.exr truth.exr --tolerance 0.1 >/dev/null || fail "--light grid is far from the reference"
+"$bin/neph-render" --compare grid.exr truth.exr --tolerance 0.023 >means.json || fail "--light grid is far from the reference"
+python3 -c '
+import json
+m = json.load(open("means.json"))
+assert all(abs(a - b) < 0.1 * b for a, b in zip(m["mean_a"], m["mean_b"])), m' ||
+    fail "--light grid has another mean than the reference"
 wrong "belong to --method march" "$bin/neph-render" c.neph -o a.png --steps 10
 wrong "belong to --method reference" "$bin/neph-render" c.neph -o a.png --method march --noise 0.1
 wrong "goes with --step geometric" "$bin/neph-render" c.neph -o a.png --method march --growth 1.1

@@ -54,6 +54,8 @@ def cases(folder):
     text = subprocess.run(command("vdb", "--help"), capture_output=True, text=True).stdout
     if "--half" in text:
         listed.append(("m.vdb", command("vdb", cloud, "--resolution", "12"), command("vdb", cloud, "--resolution", "40")))
+    shown = ["--headless", "--size", "32x18", "--samples", "1", "--light-grid", "4"]
+    listed.append(("n.png", command("view", cloud, *shown), command("view", cloud, *shown, "--sun", "10,50")))
     return listed
 
 

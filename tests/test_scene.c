@@ -292,12 +292,16 @@ static void bad_structs_are_not_written(void **state)
 
 /* --- files --- */
 
-static char folder[] = "/tmp/test_scene.XXXXXX";
+static char folder[512];
 
 static int make_files(void **state)
 {
     (void)state;
-    if (!mkdtemp(folder) || chdir(folder) || mkdir("in", 0700) || mkdir("in/deep", 0700) ||
+    const char *temporary = getenv("TMPDIR");
+    int length =
+        snprintf(folder, sizeof folder, "%s/test_scene.XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    if (length < 0 || (size_t)length >= sizeof folder || !mkdtemp(folder) || chdir(folder) ||
+        !getcwd(folder, sizeof folder) || mkdir("in", 0700) || mkdir("in/deep", 0700) ||
         mkfifo("in/pipe", 0600))
         return -1;
     static const char *const names[] = {"out.neph", "in/a.neph", "in/deep/b.neph"};

@@ -134,7 +134,7 @@ static void unfit_files_are_refused(void **state)
 typedef struct sample {
     unsigned char *bytes;
     size_t size;
-    char path[64];
+    char path[512];
 } sample;
 
 static sample load_sample(const char *name)
@@ -144,7 +144,10 @@ static sample load_sample(const char *name)
     sample s;
     snprintf(path, sizeof path, FROZEN "%s", name);
     must(shape_file_read(path, 1 << 24, &s.bytes, &s.size, &error), &error);
-    strcpy(s.path, "/tmp/nephele-vdb-XXXXXX");
+    const char *temporary = getenv("TMPDIR");
+    int length = snprintf(s.path, sizeof s.path, "%s/nephele-vdb-XXXXXX",
+                          temporary && *temporary ? temporary : "/tmp");
+    assert_in_range(length, 1, sizeof s.path - 1);
     int file = mkstemp(s.path);
     assert_true(file >= 0);
     close(file);

@@ -23,12 +23,17 @@ static shape_set *voxels_of(const shape_set *set, int voxels)
     return made;
 }
 
-/* Intersection over union of two uniform clouds, from evenly spread points of their common box. */
+/* Intersection over union of two uniform clouds, from evenly spread points of a box that holds both. */
 static double overlap(const shape_set *a, const shape_set *b)
 {
     shape_volume *va = new_volume(a), *vb = new_volume(b);
-    shape_dvec3 low, high;
+    shape_dvec3 low, high, low_b, high_b;
     shape_set_bounds(a, &low, &high);
+    shape_set_bounds(b, &low_b, &high_b);
+    for (int k = 0; k < 3; k++) {
+        (&low.x)[k] = fmin((&low.x)[k], (&low_b.x)[k]);
+        (&high.x)[k] = fmax((&high.x)[k], (&high_b.x)[k]);
+    }
     size_t both = 0, either = 0;
     enum { N = 64 };
     for (int i = 0; i < N * N * N; i++) {
