@@ -14,8 +14,9 @@ fail()
 }
 
 "$bin/neph-gauss" -q --count 8 -o cloud.neph
-# frames ARGUMENT...: draws small frames of the cloud
-frames() { "$bin/neph-view" cloud.neph -q --size 32x18 --samples 1 --light-grid 8 --fps 2 "$@"; }
+# picture ARGUMENT...: draws a small picture of the cloud; frames: pictures of it, two a second
+picture() { "$bin/neph-view" cloud.neph -q --size 32x18 --samples 1 --light-grid 8 "$@"; }
+frames() { picture --fps 2 "$@"; }
 moving="--wind 1,0,0 --shear 0.1 --drift 0,0.5,0 --life 6 --turntable 20 --day 9"
 
 # --- frames are independent: drawn in a row, alone and backwards, each is the same picture
@@ -31,7 +32,7 @@ done
 cmp -s row/f.0000.pfm row/f.0003.pfm && fail "nothing moves"
 # A single picture of the same moment is the same picture.
 # shellcheck disable=SC2086
-frames $moving --headless --time 1.5 -o row/one.pfm
+picture $moving --headless --time 1.5 -o row/one.pfm
 cmp row/one.pfm row/f.0003.pfm || fail "--time 1.5 is not frame 3 at two frames a second"
 
 # --- restart: whole frames are left alone, half ones and missing ones are drawn
@@ -77,7 +78,7 @@ cmp a.pfm b.pfm || fail "a grammar is not shown as the cloud that neph-lsys make
 cmp a.pfm b.pfm || fail "a grammar from standard input is not shown as the cloud that neph-lsys makes of it"
 
 # --- alpha: clear where there is sky, what is seen is the same; the corner of a picture that frames a cloud is sky
-frames --headless --alpha -o alpha.png
+picture --headless --alpha -o alpha.png
 [ "$(identify -format '%[channels]' alpha.png)" = srgba ] || fail "--alpha wrote a picture without alpha"
 [ "$(convert alpha.png -format '%[fx:p{0,0}.a]' info:)" = 0 ] || fail "the sky is not clear in an alpha picture"
 awk "BEGIN { exit !($(convert alpha.png -alpha extract -format '%[fx:maxima]' info:) > 0.5) }" || fail "all is clear"
@@ -88,7 +89,7 @@ refused()
 {
     code=$1 words=$2 status=0
     shift 2
-    frames "$@" >stdout 2>stderr || status=$?
+    picture "$@" >stdout 2>stderr || status=$?
     [ "$status" = "$code" ] || fail "neph-view $* ended with $status, not $code: $(cat stderr)"
     [ "$(wc -l <stderr)" = 1 ] || fail "neph-view $* wrote more or less than one line: $(cat stderr)"
     grep -q -- "$words" stderr || fail "neph-view $* does not say \"$words\" but: $(cat stderr)"

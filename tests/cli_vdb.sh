@@ -136,8 +136,8 @@ make "$tmp/cloud.neph" --max-memory 1048576 --voxel-size "$fit"
 refused 1 "uniform clouds" "$tmp/cloud.neph" --ramp 3 -o "$tmp/none.vdb"
 refused 1 "none.neph: cannot" "$tmp/none.neph" -o "$tmp/none.vdb"
 refused 2 "of a volume a .neph is made" "$tmp/a.vdb" -o "$tmp/none.vdb"
-refused 2 "belong to volumes that are written" "$tmp/a.vdb" --ramp 3 -o "$tmp/none.neph"
-refused 2 "belong to volumes that are read" "$tmp/cloud.neph" --primitives 3 -o "$tmp/none.vdb"
+refused 2 "belongs to volumes that are written" "$tmp/a.vdb" --ramp 3 -o "$tmp/none.neph"
+refused 2 "belongs to volumes that are read" "$tmp/cloud.neph" --primitives 3 -o "$tmp/none.vdb"
 
 # --- there and back: a uniform cloud's volume becomes as few primitives again that fill the same space, upright, and the
 # volume as it is looks like the cloud
