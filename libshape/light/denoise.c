@@ -17,8 +17,8 @@ enum {
 static const float strength = 0.7f;
 
 typedef struct picture {
-    const float *radiance;
-    float *variance; /* smoothed */
+    const float *radiance, *raw; /* raw: the variance as it was estimated */
+    float *variance;             /* smoothed */
     int width, height;
 } picture;
 
@@ -90,11 +90,29 @@ static void add_offset(const picture *p, int y, int dx, int dy, float *column, f
     }
 }
 
-/* A pixel moves no further than three standard deviations of its own: otherwise one bright path that strayed into the
- * sky, so noisy that the sky is like it, would leave a box as large as the window. */
-static float bounded(const picture *p, size_t at, float value)
+/* The middle one of the variances of a pixel and its eight neighbours, channel c. */
+static float middle_variance(const picture *p, int x, int y, size_t c)
 {
-    float most = 3 * sqrtf(p->variance[at]), own = p->radiance[at];
+    float sorted[9];
+    int count = 0;
+    for (int j = -1; j <= 1; j++)
+        for (int i = -1; i <= 1; i++) {
+            float v = p->raw[offset_of(p, x + i, y + j) + c];
+            int k = count++;
+            for (; k > 0 && sorted[k - 1] > v; k--)
+                sorted[k] = sorted[k - 1];
+            sorted[k] = v;
+        }
+    return sorted[4];
+}
+
+/* A pixel moves no further than three standard deviations of its own: otherwise one bright path that strayed into the
+ * sky, so noisy that the sky is like it, would leave a box as large as the window. Its own is what most of those about it
+ * have, if that is more: a pixel that chance left dark moves, one of the sky beside a cloud does not. */
+static float bounded(const picture *p, int x, int y, size_t c, float value)
+{
+    size_t at = offset_of(p, x, y) + c;
+    float most = 3 * sqrtf(fmaxf(p->raw[at], middle_variance(p, x, y, c))), own = p->radiance[at];
     return fminf(fmaxf(value, own - most), own + most);
 }
 
@@ -110,7 +128,7 @@ static void filter_row(const picture *p, int y, float *scratch, float *result)
     for (int x = 0; x < p->width; x++) {
         size_t at = offset_of(p, x, y);
         for (size_t c = 0; c < 3; c++) /* a pixel is like itself, so its weight is not 0 */
-            result[at + c] = bounded(p, at + c, sums[4 * (size_t)x + c] / sums[4 * (size_t)x + 3]);
+            result[at + c] = bounded(p, x, y, c, sums[4 * (size_t)x + c] / sums[4 * (size_t)x + 3]);
     }
 }
 
@@ -156,7 +174,8 @@ shape_status shape_denoise(const float *radiance, const float *variance, int wid
     shape_status status = check(radiance, variance, width, height, error);
     if (status)
         return status;
-    picture p = {radiance, malloc(3 * (size_t)width * (size_t)height * sizeof(float)), width, height};
+    picture p = {radiance, variance, malloc(3 * (size_t)width * (size_t)height * sizeof(float)), width,
+                 height};
     if (!p.variance)
         return shape_error_memory(error);
     smooth_variance(&p, variance);
