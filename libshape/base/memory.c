@@ -4,11 +4,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-shape_status shape_array_reserve(void **array, size_t *capacity, size_t needed, size_t size,
-                                 shape_error *error)
+shape_status shape_array_grow(void **array, size_t *capacity, size_t needed, size_t size, shape_error *error)
 {
-    if (needed <= *capacity)
-        return SHAPE_OK;
     size_t wanted = *capacity + *capacity / 2;
     if (wanted < needed)
         wanted = needed;

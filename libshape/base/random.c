@@ -6,41 +6,31 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/random_inline.h"
+
 uint64_t shape_hash(uint64_t value)
 {
-    value += 0x9e3779b97f4a7c15u;
-    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
-    value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
-    return value ^ (value >> 31);
+    return random_hash(value);
 }
 
 shape_random shape_random_seed(uint64_t seed, uint64_t stream)
 {
-    shape_random random = {0, (shape_hash(stream) << 1) | 1};
-    shape_random_u32(&random);
-    random.state += shape_hash(seed);
-    shape_random_u32(&random);
-    return random;
+    return random_seed(seed, stream);
 }
 
 uint32_t shape_random_u32(shape_random *random)
 {
-    uint64_t old = random->state;
-    random->state = old * 6364136223846793005u + random->increment;
-    uint32_t shifted = (uint32_t)(((old >> 18) ^ old) >> 27);
-    unsigned rotation = (unsigned)(old >> 59);
-    return (shifted >> rotation) | (shifted << ((32 - rotation) & 31));
+    return random_u32(random);
 }
 
 double shape_random_unit(shape_random *random)
 {
-    uint64_t high = shape_random_u32(random), low = shape_random_u32(random);
-    return (double)(((high << 32) | low) >> 11) * 0x1p-53;
+    return random_unit(random);
 }
 
 double shape_random_range(shape_random *random, double low, double high)
 {
-    return low + (high - low) * shape_random_unit(random);
+    return random_range(random, low, high);
 }
 
 double shape_random_normal(shape_random *random)
@@ -112,56 +102,81 @@ double shape_log(double x)
     return k * ln2_high + (f - (s * (f - 2 * sum) - k * ln2_low));
 }
 
-/* sin and cos of r + low, |r| <= pi/4, where low is what r lacks, below its last place. */
-static double sin_series(double r, double low)
+/* c[0] + c[1] z + ... + c[7] z^7 as a tree (Estrin 1960), whose branches a processor works on at once. */
+static inline double eight_terms(double z, const double c[8])
 {
-    double r2 = r * r, sum = 0;
-    for (int n = 19; n >= 3; n -= 2)
-        sum = -r2 / (n * (n - 1)) * (1 + sum);
-    return r + (r * sum + low * (1 - r2 / 2));
+    double z2 = z * z, z4 = z2 * z2;
+    return ((c[0] + c[1] * z) + (c[2] + c[3] * z) * z2) + ((c[4] + c[5] * z) + (c[6] + c[7] * z) * z2) * z4;
 }
 
-static double cos_series(double r, double low)
+/* sin and cos of r + low, |r| <= pi/4, where low is what r lacks, below its last place: Taylor's series; the terms left
+ * out are below 2^-60. */
+static inline double sin_series(double r, double low)
 {
-    double r2 = r * r, sum = 0;
-    for (int n = 20; n >= 4; n -= 2)
-        sum = -r2 / (n * (n - 1)) * (1 + sum);
-    double half = r2 / 2;
-    return 1 - (half + (half * sum + r * low));
+    static const double c[8] = {
+        -1.0 / 6,        1.0 / 120,        -1.0 / 5040,          1.0 / 362880,
+        -1.0 / 39916800, 1.0 / 6227020800, -1.0 / 1307674368000, 1.0 / 355687428096000};
+    double r2 = r * r;
+    return r + (r * (r2 * eight_terms(r2, c)) + low * (1 - r2 / 2));
+}
+
+static inline double cos_series(double r, double low)
+{
+    static const double c[8] = {
+        1.0 / 24,        -1.0 / 720,         1.0 / 40320,          -1.0 / 3628800,
+        1.0 / 479001600, -1.0 / 87178291200, 1.0 / 20922789888000, -1.0 / 6402373705728000};
+    double r2 = r * r, half = r2 / 2;
+    return 1 - (half + (r * low - r2 * r2 * eight_terms(r2, c)));
+}
+
+/* floor for |x| < 2^62: a call of libm's takes longer than what it is needed for. */
+static inline double whole(double x)
+{
+    double cut = (double)(int64_t)x;
+    return cut > x ? cut - 1 : cut;
 }
 
 /* x modulo pi/2 in [-pi/4, pi/4], as a sum r + *low, and which quarter it was in. pi/2 in three parts (Cody and Waite);
  * the products with the first two are exact, and Knuth's sum keeps what their difference loses. */
-static double reduce(double x, double *low, int *quarter)
+static inline double reduce(double x, double *low, int *quarter)
 {
-    double k = floor(x * 0.6366197723675814 + 0.5);
+    double k = whole(x * 0.6366197723675814 + 0.5);
     double a = x - k * 0x1.921fb544p0, b = k * 0x1.0b4611a6p-34;
     double r = a - b, part = r - a;
     double rest = ((a - (r - part)) - (b + part)) - k * 0x1.3198a2e037073p-69;
     double sum = r + rest;
     *low = (r - sum) + rest;
-    *quarter = (int)(k - 4 * floor(k / 4));
+    *quarter = (int)((int64_t)k & 3);
     return sum;
+}
+
+void shape_sin_cos(double x, double *sine, double *cosine)
+{
+    if (!(fabs(x) < 1e9)) { /* NaN for infinity; a turn beyond 1e9 radians means nothing */
+        *sine = x - x;
+        *cosine = x - x == 0 ? 1 : x - x;
+        return;
+    }
+    int quarter;
+    double low, r = reduce(x, &low, &quarter), s = sin_series(r, low), c = cos_series(r, low);
+    *sine = quarter & 1 ? c : s;
+    *cosine = quarter & 1 ? s : c;
+    *sine = quarter & 2 ? -*sine : *sine;
+    *cosine = quarter == 1 || quarter == 2 ? -*cosine : *cosine;
 }
 
 double shape_sin(double x)
 {
-    if (!(fabs(x) < 1e9))
-        return x - x; /* NaN for infinity; a turn beyond 1e9 radians means nothing */
-    int quarter;
-    double low, r = reduce(x, &low, &quarter);
-    double value = quarter & 1 ? cos_series(r, low) : sin_series(r, low);
-    return quarter & 2 ? -value : value;
+    double s, c;
+    shape_sin_cos(x, &s, &c);
+    return s;
 }
 
 double shape_cos(double x)
 {
-    if (!(fabs(x) < 1e9))
-        return x - x == 0 ? 1 : x - x;
-    int quarter;
-    double low, r = reduce(x, &low, &quarter);
-    double value = quarter & 1 ? sin_series(r, low) : cos_series(r, low);
-    return quarter == 1 || quarter == 2 ? -value : value;
+    double s, c;
+    shape_sin_cos(x, &s, &c);
+    return c;
 }
 
 double shape_pow(double x, double y)

@@ -6,10 +6,13 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/random_inline.h"
 #include "generate/grammar_private.h"
 
 /* Which stream of a symbol's key serves what; the turtle's is its own (turtle.c). */
 enum { STREAM_ARGUMENTS = 1, STREAM_CONDITION = 2, STREAM_CHOICE = 3, STREAM_SHRINK = 4 };
+
+enum { PLACES = 32 }; /* of symbols in a body, from its end, whose hashes are kept at hand */
 
 /* A body being read: the symbols from `next` on are still to come. */
 typedef struct level {
@@ -27,6 +30,7 @@ typedef struct derivation {
     void *user;
     shape_derive_counts counts;
     uint64_t work; /* symbols rewritten or derived */
+    uint64_t place_hashes[PLACES];
     level *levels;
     double *values;
     size_t level_count, level_capacity, value_count, value_capacity;
@@ -80,9 +84,9 @@ static shape_status no_value(derivation *d, const evaluation *e)
 }
 
 /* The key of a symbol, by its place counted from its body's end: all chance below it follows from it. */
-static uint64_t child_key(uint64_t key, uint64_t index)
+static uint64_t child_key(const derivation *d, uint64_t key, uint64_t index)
 {
-    return shape_hash(key + shape_hash(index + 1));
+    return random_hash(key + (index < PLACES ? d->place_hashes[index] : random_hash(index + 1)));
 }
 
 static shape_status evaluate_arguments(derivation *d, const token *t, const level *l, uint64_t key,
@@ -153,8 +157,8 @@ static shape_status choose(derivation *d, const token *t, const double *argument
         if (!(sum > 0))
             return SHAPE_OK;
         if (!pass) {
-            shape_random random = shape_random_seed(key, STREAM_CHOICE);
-            point = shape_random_unit(&random) * sum;
+            shape_random random = random_seed(key, STREAM_CHOICE);
+            point = random_unit(&random) * sum;
         }
     }
     return SHAPE_OK;
@@ -169,8 +173,8 @@ static shape_status push_level(derivation *d, const rule *r, const double *argum
                             d->value_count + SHAPE_GRAMMAR_ARGUMENTS_MAX, sizeof *d->values, d->error))
         return SHAPE_ERROR_MEMORY;
     if (d->options.shrink.low < d->options.shrink.high) {
-        shape_random random = shape_random_seed(key, STREAM_SHRINK);
-        scale *= shape_random_range(&random, d->options.shrink.low, d->options.shrink.high);
+        shape_random random = random_seed(key, STREAM_SHRINK);
+        scale *= random_range(&random, d->options.shrink.low, d->options.shrink.high);
     } else {
         scale *= d->options.shrink.low;
     }
@@ -217,7 +221,7 @@ static shape_status step(derivation *d)
     double arguments[SHAPE_GRAMMAR_ARGUMENTS_MAX];
     const rule *chosen = NULL;
     const token *t = &d->grammar->tokens[l->next++];
-    uint64_t key = child_key(l->key, (uint64_t)(l->end - l->next));
+    uint64_t key = child_key(d, l->key, (uint64_t)(l->end - l->next));
     double scale = l->scale;
     if (d->work++ == d->options.max_symbols)
         return over_limit(d, t, d->options.max_symbols, "symbols",
@@ -241,6 +245,8 @@ shape_status shape_grammar_derive(const shape_grammar *grammar, const shape_deri
         return status;
     derivation d = {
         .grammar = grammar, .options = *options, .visitor = visitor, .user = user, .error = error};
+    for (uint64_t i = 0; i < PLACES; i++)
+        d.place_hashes[i] = random_hash(i + 1);
     if (!d.options.max_symbols)
         d.options.max_symbols = options->max_primitives > UINT64_MAX / SYMBOLS_A_PRIMITIVE
                                     ? UINT64_MAX
@@ -248,7 +254,7 @@ shape_status shape_grammar_derive(const shape_grammar *grammar, const shape_deri
     if (!options->max_symbols && d.options.max_symbols < LEAST_SYMBOLS)
         d.options.max_symbols = LEAST_SYMBOLS;
     level start = {grammar->axiom.first,     grammar->axiom.first + grammar->axiom.count, 0, 0, 1,
-                   shape_hash(options->seed)};
+                   random_hash(options->seed)};
     status = shape_array_reserve((void **)&d.levels, &d.level_capacity, 1, sizeof *d.levels, error);
     if (!status)
         status = shape_array_reserve((void **)&d.values, &d.value_capacity, 1, sizeof *d.values, error);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/random_inline.h"
 #include "generate/grammar_private.h"
 
 enum { STREAM_TURTLE = 16 }; /* of a symbol's key; see derive.c for the others */
@@ -74,16 +75,19 @@ static shape_status refuse(const shape_turtle *t, const shape_symbol *s, shape_s
 static void turn_factors(double degrees, double *sine, double *cosine)
 {
     static const double radians = 0x1.1df46a2529d39p-6;
-    double quarters = floor(degrees / 90 + 0.5);
-    double rest = (degrees - quarters * 90) * radians;
-    double s = shape_sin(rest), c = shape_cos(rest);
-    int quarter = (int)(quarters - 4 * floor(quarters / 4));
+    double turns = degrees / 90 + 0.5;
+    int64_t quarters = (int64_t)turns; /* turn_by keeps this far within the range */
+    quarters -= (double)quarters > turns;
+    double rest = (degrees - (double)quarters * 90) * radians;
+    double s, c;
+    shape_sin_cos(rest, &s, &c);
+    int quarter = (int)(quarters & 3);
     *sine = quarter == 0 ? s : quarter == 1 ? c : quarter == 2 ? -s : -c;
     *cosine = quarter == 0 ? c : quarter == 1 ? -s : quarter == 2 ? -c : s;
 }
 
 /* Turns axis a towards axis b by an angle, and b away from a. */
-static void turn(shape_dvec3 *a, shape_dvec3 *b, double degrees)
+static inline void turn(shape_dvec3 *a, shape_dvec3 *b, double degrees)
 {
     double s, c;
     turn_factors(degrees, &s, &c);
@@ -97,9 +101,9 @@ static double draw(const shape_symbol *symbol, shape_random *random, bool *seede
     if (range.low == range.high)
         return range.low;
     if (!*seeded)
-        *random = shape_random_seed(symbol->key, STREAM_TURTLE);
+        *random = random_seed(symbol->key, STREAM_TURTLE);
     *seeded = true;
-    return shape_random_range(random, range.low, range.high);
+    return random_range(random, range.low, range.high);
 }
 
 static shape_status turn_by(shape_turtle *t, const shape_symbol *s, shape_error *error)
@@ -151,10 +155,12 @@ static shape_status advance(shape_turtle *t, const shape_symbol *s, double step,
 {
     pose *p = &t->now;
     p->position = shape_dvec3_add(p->position, shape_dvec3_scale(p->head, step));
-    double far = fmax(fabs(p->position.x), fmax(fabs(p->position.y), fabs(p->position.z)));
-    if (!(far <= farthest))
+    double x = fabs(p->position.x), y = fabs(p->position.y), z = fabs(p->position.z);
+    if (!(x <= farthest && y <= farthest && z <= farthest)) {
+        double far = fmax(x, fmax(y, z));
         return refuse(t, s, SHAPE_ERROR_LIMIT, "the distance from the origin", far, "keep it within 1e9 m",
                       error);
+    }
     return SHAPE_OK;
 }
 

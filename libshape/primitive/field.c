@@ -213,14 +213,32 @@ static shape_box bounds_box(const shape_ellipsoid *e, shape_bounds bounds)
     return box;
 }
 
+/* The box of a list's spheres, each radius times `grow`; empty where there are none. */
+static shape_box spheres_box(const shape_primitives *list, float grow)
+{
+    shape_box box = shape_box_empty();
+    shape_vec3 low = box.min, high = box.max;
+    for (size_t i = 0; i < list->sphere_count; i++) {
+        const shape_sphere *s = &list->spheres[i];
+        float r = s->radius * grow;
+        low.x = s->x - r < low.x ? s->x - r : low.x;
+        low.y = s->y - r < low.y ? s->y - r : low.y;
+        low.z = s->z - r < low.z ? s->z - r : low.z;
+        high.x = s->x + r > high.x ? s->x + r : high.x;
+        high.y = s->y + r > high.y ? s->y + r : high.y;
+        high.z = s->z + r > high.z ? s->z + r : high.z;
+    }
+    box.min = low;
+    box.max = high;
+    return box;
+}
+
 shape_box shape_cloud_box(const shape_cloud *cloud, const shape_primitives *list)
 {
     bool grid = list->grid != NULL, layer = grid || cloud->field.model == SHAPE_MODEL_LAYER;
     shape_bounds bounds = grid ? SHAPE_BOUNDS_BOX : cloud->field.layer.bounds;
     float grow = layer ? 1 : shape_cloud_support(cloud, list), margin = shape_cloud_margin(cloud, list);
-    shape_box box = shape_box_empty();
-    for (size_t i = 0; i < list->sphere_count; i++)
-        box = shape_box_join(box, shape_sphere_box(&list->spheres[i], grow));
+    shape_box box = spheres_box(list, grow);
     for (size_t i = 0; i < list->ellipsoid_count; i++) {
         const shape_ellipsoid *e = &list->ellipsoids[i];
         box = shape_box_join(box, layer ? bounds_box(e, bounds) : shape_ellipsoid_box(e, grow));

@@ -35,6 +35,7 @@ double shape_exp(double x);
 double shape_log(double x);
 double shape_sin(double x); /* radians */
 double shape_cos(double x);
+void shape_sin_cos(double x, double *sine, double *cosine); /* both, in the time of one */
 /* x to the power y: repeated products where y is a whole number up to 64 in size (within 2 |y| + 1 units in the last
  * place), else exp(y log x) (within 2 + 2 |y log x|). */
 double shape_pow(double x, double y);
