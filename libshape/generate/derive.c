@@ -253,7 +253,7 @@ shape_status shape_grammar_derive(const shape_grammar *grammar, const shape_deri
                                     : options->max_primitives * SYMBOLS_A_PRIMITIVE;
     if (!options->max_symbols && d.options.max_symbols < LEAST_SYMBOLS)
         d.options.max_symbols = LEAST_SYMBOLS;
-    level start = {grammar->axiom.first,     grammar->axiom.first + grammar->axiom.count, 0, 0, 1,
+    level start = {grammar->axiom.first,      grammar->axiom.first + grammar->axiom.count, 0, 0, 1,
                    random_hash(options->seed)};
     status = shape_array_reserve((void **)&d.levels, &d.level_capacity, 1, sizeof *d.levels, error);
     if (!status)
