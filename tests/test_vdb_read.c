@@ -57,6 +57,9 @@ static void voxels_and_transforms_are_read(void **state)
     contents = read_frozen("half.vdb", &options);
     check_ramp(&contents, 1.0 / 2048, false);
     shape_grid_release(contents.grid);
+    contents = read_frozen("double.vdb", &options);
+    check_ramp(&contents, 0, false);
+    shape_grid_release(contents.grid);
 }
 
 /* A tile of 40^3 voxels of a quarter: its sum is exact in floats, and most of its bricks are one. */
