@@ -8,6 +8,7 @@ All work is done by the programs, in a temporary folder, before anything in the 
 message is reported and the scene is as it was. Each volume has a file name of its own, made of its content, so that undo
 finds the former one.
 """
+import contextlib
 import glob
 import hashlib
 import json
@@ -90,7 +91,7 @@ class NepheleSettings(bpy.types.PropertyGroup):
                                 description="Standard deviations of the spheres' places; z is height")
     radius: FloatProperty(name="Radius", default=2.9, min=0.001, unit="LENGTH", description="Of the middle sphere")
 
-    own_medium: BoolProperty(name="Override the Medium", description="In place of what the grammar says of it")
+    own_medium: BoolProperty(name="Own Medium", description="In place of what the grammar says of its medium")
     model: EnumProperty(name="Density", items=[
         ("SPHEROID", "Noise", "Falls off towards the edge, with noise"),
         ("UNIFORM", "Plain", "1 inside, 0 outside"),
@@ -101,7 +102,7 @@ class NepheleSettings(bpy.types.PropertyGroup):
                           description="Share of light that is scattered on. Shown at once")
     g: FloatProperty(name="Anisotropy", default=0.85, min=-0.99, max=0.99, update=medium_changed,
                      description="Mean cosine of the scattering angle. Shown at once")
-    kappa: FloatProperty(name="Noise at Edge", default=0.5, min=0, max=1)
+    kappa: FloatProperty(name="Edge Noise", default=0.5, min=0, max=1)
     octaves: IntProperty(name="Octaves", default=5, min=1, max=16)
     noise_scale: FloatProperty(name="Noise Scale", default=0, min=0, unit="LENGTH",
                                description="Of the first octave; 0: a fifth of the median radius")
@@ -259,10 +260,23 @@ def check_volume(path):
         bpy.data.volumes.remove(volume)
 
 
+@contextlib.contextmanager
+def waiting():
+    """The pointer says that it takes a moment."""
+    window = bpy.context.window
+    if window:
+        window.cursor_set("WAIT")
+    try:
+        yield
+    finally:
+        if window:
+            window.cursor_set("DEFAULT")
+
+
 def make_volume(s, source, scene, stem):
     """The volume's file, what neph-info says of its cloud, and what the user should know."""
     folder, passing = volume_folder(scene)
-    with tempfile.TemporaryDirectory(prefix="nephele-") as work:
+    with waiting(), tempfile.TemporaryDirectory(prefix="nephele-") as work:
         make_shape(s, source, work)
         cloud = json.loads(run("neph-info", ["--json", "cloud.neph"], work))["clouds"][0]
         voxels = s.preview_voxels if s.preview else s.voxels
@@ -445,7 +459,8 @@ class NEPHELE_OT_light(bpy.types.Operator):
         if not scene.world or scene.world.name != "Nephele sky":
             scene.world = bpy.data.worlds.get("Nephele sky") or bpy.data.worlds.new("Nephele sky")
         scene.world.use_nodes = True
-        scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (*self.sky, 1)
+        background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
+        background.inputs["Color"].default_value = (*self.sky, 1)
         return {"FINISHED"}
 
 
@@ -462,7 +477,8 @@ class NEPHELE_OT_tidy(bpy.types.Operator):
         return context.window_manager.invoke_confirm(self, event)
 
     def execute(self, context):
-        used = {os.path.realpath(bpy.path.abspath(volume.filepath)) for volume in bpy.data.volumes if volume.users}
+        used = {os.path.realpath(bpy.path.abspath(volume.filepath, library=volume.library))
+                for volume in bpy.data.volumes if volume.users}
         current = bpy.path.abspath(context.object.data.filepath)
         stem = bpy.path.clean_name(context.object.nephele.stem)
         pattern = re.compile(re.escape(stem) + r"-[0-9a-f]{8}\.vdb")
@@ -521,8 +537,9 @@ def draw_settings(layout, s, own):
     draw_shape(layout.column(), s, own)
     draw_medium(layout.column(), s)
     column = layout.column()
-    for name in ("preview", "preview_voxels", "voxels", "half"):
-        column.prop(s, name)
+    column.prop(s, "preview")
+    column.prop(s, "preview_voxels" if s.preview else "voxels", text="Voxels")
+    column.prop(s, "half")
 
 
 class Tab:
@@ -560,7 +577,7 @@ class NEPHELE_PT_new(Tab, bpy.types.Panel):
         draw_settings(self.layout, settings, False)
         self.layout.prop(context.scene, "nephele_folder")
         if volume_folder(context.scene)[1]:
-            self.layout.label(text=".blend not saved: temporary files", icon="INFO")
+            self.layout.label(text="Not saved: temporary", icon="INFO")
 
 
 class NEPHELE_PT_light(Tab, bpy.types.Panel):
@@ -569,9 +586,9 @@ class NEPHELE_PT_light(Tab, bpy.types.Panel):
     def draw(self, context):
         scene = context.scene
         if scene.render.engine != "CYCLES":
-            self.layout.label(text="Clouds are made for Cycles", icon="INFO")
+            self.layout.label(text="Engine is not Cycles", icon="INFO")
         elif min(scene.cycles.volume_bounces, scene.cycles.max_bounces) < FEW_BOUNCES:
-            self.layout.label(text="Few volume bounces: dark clouds", icon="INFO")
+            self.layout.label(text="Few bounces: too dark", icon="INFO")
         self.layout.operator("nephele.light", icon="LIGHT_SUN")
 
 
