@@ -56,6 +56,8 @@ done
 "$bin/neph-lsys" -q "$root/share/nephele/examples/spiral.lsys" | "$bin/neph-info" - >/dev/null ||
     fail "the installed example does not go through the installed programs"
 
+[ -s "$root/share/nephele/examples/blender/nephele_addon.py" ] || fail "the Blender add-on is not installed"
+
 # --- what libshape.so exports
 declared()
 {
