@@ -9,7 +9,7 @@
 #include "budget/view.h"
 
 /* The rungs: each has half as many again. */
-enum { STEP_RUNGS = 16, CUTS = 5, CELL_RUNGS = 10, CELLS_TRIED = 5, STEPS_GAP = 3 };
+enum { STEP_RUNGS = 16, CUTS = 5, CELL_RUNGS = 10, CELLS_TRIED = 4, STEPS_GAP = 3 };
 static const int cell_rungs[CELL_RUNGS] = {4, 6, 9, 13, 20, 30, 45, 68, 100, 150};
 static const double cut_pixels[CUTS] = {0, 0.5, 1, 2, 4};
 

@@ -3,8 +3,8 @@
  *
  *     sweep COUNT [FIRST]
  *
- * renders COUNT pictures of up to 8x6, sixteen a scene, from scene number FIRST (default 0) on. A scene depends on its
- * number alone, so what fails can be looked at again: sweep 16 NUMBER. Exit 1 where anything fails. */
+ * renders COUNT pictures of up to 8x6, forty a scene, from scene number FIRST (default 0) on. A scene depends on its
+ * number alone, so what fails can be looked at again: sweep 40 NUMBER. Exit 1 where anything fails. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@
 #include "shape/paper.h"
 #include "shape/phase.h"
 
-enum { PICTURES = 16, MARCHED = 10, TRACED = 12, RAYS = 8, FLUX_RAYS = 512 };
+enum { PICTURES = 40, MARCHED = 26, TRACED = 32, RAYS = 8, FLUX_RAYS = 512 };
 
 /* What was found, over all scenes. */
 typedef struct tally {
@@ -313,19 +313,20 @@ static void add(tally *all, const tally *t)
     all->claim_high = fmax(all->claim_high, t->claim_high);
 }
 
-static void print(const tally *t, long scenes)
+static void print(FILE *to, const tally *t, long scenes)
 {
-    printf("- %ld pictures of %ld scenes: %ld with a NaN, an infinity or a negative value\n", t->pictures,
-           scenes, t->bad);
-    printf("- %ld checks of energy: %ld failed; %ld of %ld paths cut after 4096 collisions\n", t->rays,
-           t->broken, t->cut, t->paths);
-    printf("- light `grid` in a white furnace: from %.4f to %.4f in the %ld scenes where it claims 1 within "
-           "10 %%;\n"
-           "  %ld of all %ld within 5 %%, from %.4f to %.4f\n",
-           t->claim_low, t->claim_high, t->claimed, t->grid_near, scenes, t->grid_low, t->grid_high);
+    fprintf(to, "- %ld pictures of %ld scenes: %ld with a NaN, an infinity or a negative value\n",
+            t->pictures, scenes, t->bad);
+    fprintf(to, "- %ld checks of energy: %ld failed; %ld of %ld paths cut after 4096 collisions\n", t->rays,
+            t->broken, t->cut, t->paths);
+    fprintf(to,
+            "- light `grid` in a white furnace: from %.4f to %.4f in the %ld scenes where it claims 1 within "
+            "10 %%;\n"
+            "  %ld of all %ld within 5 %%, from %.4f to %.4f\n",
+            t->claim_low, t->claim_high, t->claimed, t->grid_near, scenes, t->grid_low, t->grid_high);
     if (t->flux)
-        printf("- light `grid`, flux: %.3f of what was scattered, mean of %ld of those scenes\n",
-               t->flux_seen / (double)t->flux, t->flux);
+        fprintf(to, "- light `grid`, flux: %.3f of what was scattered, mean of %ld of those scenes\n",
+                t->flux_seen / (double)t->flux, t->flux);
 }
 
 static const tally nothing = {.grid_low = INFINITY, .claim_low = INFINITY};
@@ -337,14 +338,21 @@ int main(int argc, char **argv)
         return 2;
     setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what failed stands there even if the rest is cut off */
     tally all = nothing;
+    long done = 0;
     long scenes = (count + PICTURES - 1) / PICTURES;
 #pragma omp parallel for schedule(dynamic, 1)
     for (long i = 0; i < scenes; i++) {
         tally t = nothing;
         run_scene(first + i, &t);
 #pragma omp critical
-        add(&all, &t);
+        {
+            add(&all, &t);
+            if (++done % 500 == 0 && done < scenes) {
+                fprintf(stderr, "%ld of %ld scenes:\n", done, scenes);
+                print(stderr, &all, done);
+            }
+        }
     }
-    print(&all, scenes);
+    print(stdout, &all, scenes);
     return all.bad > 0 || all.broken > 0;
 }
