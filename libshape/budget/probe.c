@@ -73,8 +73,8 @@ shape_status probe_march(probe *p, const shape_marcher *marcher, probe_picture *
 #pragma omp for schedule(dynamic, 8)
         for (int i = 0; i < p->rays; i++)
             if (!own)
-                own = shape_march_radiance(marcher, p->eye, p->directions[i], 0, &scratch, picture->rgb[i],
-                                           NULL);
+                own = shape_march_radiance(marcher, p->eye, p->directions[i], 0, &scratch,
+                                           picture->rgb + 3 * i, NULL);
         looks += scratch.looks;
         shape_march_scratch_free(&scratch);
         if (own) {
@@ -91,7 +91,7 @@ double probe_change(const probe *p, const probe_picture *picture, const probe_pi
     double sum = 0;
     for (int i = 0; i < p->rays; i++)
         for (int c = 0; c < 3; c++) {
-            double b = reference->rgb[i][c], off = picture->rgb[i][c] - b;
+            double b = reference->rgb[3 * i + c], off = picture->rgb[3 * i + c] - b;
             sum += off * off / (b * b + SHAPE_IMAGEERROR_EPSILON);
         }
     return p->tries ? sqrt(sum / (3.0 * p->tries)) : 0;

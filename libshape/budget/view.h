@@ -15,9 +15,9 @@ typedef struct probe {
     shape_march_work work; /* of all marchers that were looked through */
 } probe;
 
-/* A picture of the rays alone: RGB each. */
+/* A picture of the rays alone: red, green, blue each. */
 typedef struct probe_picture {
-    double rgb[PROBE_RAYS][3];
+    double rgb[3 * PROBE_RAYS];
 } probe_picture;
 
 /* Picks rays by the R2 sequence (Roberts 2018) over the pixels, so that they are spread evenly. */

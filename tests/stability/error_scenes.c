@@ -15,12 +15,12 @@
 #include "light/march.h"
 #include "shape/budget.h"
 
-enum { PIXELS = 64 * 36, VALUES = 3 * PIXELS };
+enum { PIXELS = 96 * 54, VALUES = 3 * PIXELS };
 
 /* The grid of settings that is tried whole. */
-enum { STEPS = 11, CELLS = 7, CUTS = 4 };
+enum { STEPS = 11, CELLS = 8, CUTS = 4 };
 static const int grid_steps[STEPS] = {6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192};
-static const int grid_cells[CELLS] = {4, 6, 8, 12, 16, 24, 34};
+static const int grid_cells[CELLS] = {4, 6, 8, 12, 16, 24, 32, 48};
 
 typedef struct outcome {
     bool seen;
@@ -92,23 +92,14 @@ static double change(const generated_scene *s, const float *picture, const float
     return e;
 }
 
-/* What ever more steps and cells come to: two fine grids of light, and what is left after them if the difference halves with
- * every doubling, as that of upwind differences does. */
+/* All octaves, fine steps, and the light grid's default of 48 cells. */
 static void draw_truth(const generated_scene *s, float *truth)
 {
     shape_march_options o = shape_march_defaults();
     double ignored;
-    float *half = malloc(VALUES * sizeof *half);
-    if (!half)
-        abort();
     o.step = longest_side(s) / 600;
-    o.resolution = 18;
-    draw(s, s->volume, &o, half, &ignored, &ignored, NULL);
-    o.resolution = 34; /* two cells of either are the border */
+    o.resolution = 48;
     draw(s, s->volume, &o, truth, &ignored, &ignored, NULL);
-    for (int i = 0; i < VALUES; i++)
-        truth[i] = fmaxf(2 * truth[i] - half[i], 0);
-    free(half);
 }
 
 /* The fastest settings of the grid that keep to what is allowed. Times grow with steps and with cells, so what can only be

@@ -119,7 +119,7 @@ static void make_view(generated_scene *s)
             s->light.sky_radiance[c] = (float)range(s, 0, 1);
     }
     s->view = shape_view_defaults();
-    s->view.width = 64, s->view.height = 36;
+    s->view.width = 96, s->view.height = 54;
     s->view.fov = range(s, 30, 60);
     shape_set_cloud_bounds(s->set, 0, &low, &high);
     shape_view_frame(&s->view, &s->light, low, high);

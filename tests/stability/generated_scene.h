@@ -14,7 +14,7 @@ typedef struct generated_scene {
     shape_set *set;
     shape_volume *volume;
     shape_light light;
-    shape_view view; /* 64x36 */
+    shape_view view; /* 96x54 */
     double error;    /* allowed, 0.02 to 0.2 */
 } generated_scene;
 

@@ -47,7 +47,8 @@ typedef struct shape_budget_choice {
 } shape_budget_choice;
 
 /* Chooses steps, light cells and octaves so that the marched picture is within `error` (1e-4 to 1) of the same march with all
- * octaves and ever more steps and cells, at the least cost. It looks at a few hundred of the picture's rays: with ever
+ * octaves, ever more steps and light grids of 48 cells, the default, at the least cost. What such a grid itself misses of the
+ * reference is not in it. It looks at a few hundred of the picture's rays: with ever
  * more steps, until they no longer change, and with small light grids, whose changes tell how large one will do. options give
  * rule and whatever else is not chosen; their light must be SHAPE_MARCH_GRID and their steps fixed. The result is the same
  * for any number of threads. The caller frees *choice by shape_budget_free, also after an error. Errors: the checks of view,
