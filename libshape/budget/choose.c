@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "budget/view.h"
+#include "shape/imageerror.h"
 
 /* The rungs of steps have half as many again each; cells end at the default of all programs. */
 enum { STEP_RUNGS = 16, CUTS = 5, CELL_RUNGS = 11, CELLS_TRIED = 4, CELLS_TRIED_MOST = 6, STEPS_GAP = 3 };
@@ -199,28 +200,47 @@ static shape_status try_octaves(chooser *c, shape_marcher *marcher, const probe_
 
 /* --- light --- */
 
-/* Upwind differences make the light's error shrink like 1 / cells; the grids tried give its slope, V, by least squares over all
- * but the coarsest: picture(c) = picture(48) + V (1 / c - 1 / 48). Of grids that were made the error is then measured against
- * that; of others it is V's. */
-static void extrapolate(chooser *c, const probe_picture *pictures, probe_picture *slope,
-                        probe_picture *finest)
+/* The slope V of pictures over 1 / cells, by least squares over all grids tried but the coarsest. How the cells happen to
+ * lie on the cloud is noise in it, which makes V longer: by the residuals' share it is shortened (James and Stein 1961). */
+static void find_slope(const chooser *c, const probe_picture *pictures, probe_picture *slope)
 {
-    double mean = 0, square = 0, full = 1.0 / cell_rungs[CELL_RUNGS - 1];
-    int last = c->tried - 1;
-    for (int k = 1; k < c->tried; k++)
-        mean += 1.0 / cell_rungs[k] / last;
-    for (int k = 1; k < c->tried; k++)
+    double mean = 0, square = 0, length = 0, noise = 0;
+    int count = c->tried - 1;
+    const double *last = pictures[count].rgb;
+    for (int k = 1; k <= count; k++)
+        mean += 1.0 / cell_rungs[k] / count;
+    for (int k = 1; k <= count; k++)
         square += pow(1.0 / cell_rungs[k] - mean, 2);
     for (int i = 0; i < 3 * c->probe.rays; i++) {
-        double sum = 0;
-        for (int k = 1; k < c->tried; k++)
+        double sum = 0, middle = 0, weight = 1 / (last[i] * last[i] + SHAPE_IMAGEERROR_EPSILON);
+        for (int k = 1; k <= count; k++) {
             sum += pictures[k].rgb[i] * (1.0 / cell_rungs[k] - mean);
+            middle += pictures[k].rgb[i] / count;
+        }
         slope->rgb[i] = sum / square;
-        finest->rgb[i] = pictures[last].rgb[i] + sum / square * (full - 1.0 / cell_rungs[last]);
+        length += weight * slope->rgb[i] * slope->rgb[i];
+        for (int k = 1; k <= count; k++) {
+            double rest = pictures[k].rgb[i] - middle - slope->rgb[i] * (1.0 / cell_rungs[k] - mean);
+            noise += weight * rest * rest / ((count - 2) * square);
+        }
     }
+    double keep = length > 0 ? fmax(1 - noise / length, 0.25) : 0;
+    for (int i = 0; i < 3 * c->probe.rays; i++)
+        slope->rgb[i] *= keep;
+}
+
+/* Upwind differences make the light's error shrink like 1 / cells: picture(c) = picture(48) + V (1 / c - 1 / 48). Of grids
+ * that were made the error is measured against that picture(48); of others it is V's. spare: three pictures. */
+static void extrapolate(chooser *c, const probe_picture *pictures, probe_picture *spare)
+{
+    probe_picture *slope = spare, *off = spare + 1, *finest = spare + 2;
+    double full = 1.0 / cell_rungs[CELL_RUNGS - 1];
+    int last = c->tried - 1, values = 3 * c->probe.rays;
+    find_slope(c, pictures, slope);
+    for (int i = 0; i < values; i++)
+        finest->rgb[i] = pictures[last].rgb[i] + slope->rgb[i] * (full - 1.0 / cell_rungs[last]);
     for (int k = 0; k < CELL_RUNGS; k++) {
-        probe_picture *off = slope + 1;
-        for (int i = 0; i < 3 * c->probe.rays; i++)
+        for (int i = 0; i < values; i++)
             off->rgb[i] = finest->rgb[i] + slope->rgb[i] * (1.0 / cell_rungs[k] - full);
         c->cell_error[k] = probe_change(&c->probe, k <= last ? &pictures[k] : off, finest);
     }
@@ -250,7 +270,7 @@ static shape_status try_light(chooser *c, int steps, probe_picture *pictures, sh
         c->tried = k + 1;
         if (status || c->tried < CELLS_TRIED)
             continue;
-        extrapolate(c, pictures, spare, spare + 2);
+        extrapolate(c, pictures, spare);
         int enough = 0;
         while (enough < CELL_RUNGS - 1 && c->cell_error[enough] > 0.8 * c->allowed)
             enough++;
