@@ -12,6 +12,7 @@
 #include "cli_volume.h"
 #include "render_march.h"
 #include "render_opaque.h"
+#include "shape/budget.h"
 #include "shape/denoise.h"
 #include "shape/file.h"
 #include "shape/image.h"
@@ -27,8 +28,9 @@ static const char *const method_names[] = {"reference", "march", "paper", "paper
 
 static int method;
 static int64_t samples = 64, max_bounces = 4096;
-static double noise, tolerance;
-static bool denoise, stats, compare, samples_given, noise_given, tolerance_given, bounces_given, paper_lod;
+static double noise, allowed, tolerance;
+static bool denoise, stats, compare, samples_given, noise_given, error_given, tolerance_given, bounces_given,
+    paper_lod;
 
 static const cli_option render_options[] = {
     {"method", 0, CLI_CHOICE, &method, 0, 0, "reference|march|paper|paper-ndt",
@@ -36,7 +38,10 @@ static const cli_option render_options[] = {
     {"spp", 0, CLI_INTEGER, &samples, 1, 1 << 20, "N",
      "paths a pixel; with --noise or --error the most; rays of other methods [64; others 1]", &samples_given,
      false},
-    {"error", 0, CLI_NUMBER, &noise, 1e-6, 10, "E", "the same as --noise", &noise_given, false},
+    {"error", 0, CLI_NUMBER, &allowed, 1e-6, 10, "E",
+     "reference: the same as --noise; march, 0.0001 to 1: choose steps, octaves and light grid for it "
+     "(docs/error.md) [off]",
+     &error_given, false},
     {"noise", 0, CLI_NUMBER, &noise, 1e-6, 10, "T", "stop at this relative error of the picture [off]",
      &noise_given, false},
     {"max-bounces", 0, CLI_INTEGER, &max_bounces, 0, 1 << 20, "N", "collisions that a path may have [4096]",
@@ -87,6 +92,7 @@ static const cli_program program = {
     .examples = "  neph-render cloud.neph -o cloud.png --spp 256\n"
                 "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
                 "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
+                "  neph-render cloud.neph -o cloud.png --method march --error 0.05\n"
                 "  neph-render smoke.vdb -o smoke.png --density-gain 3 --extinction 0.5\n"
                 "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
     .min_arguments = 1,
@@ -151,8 +157,8 @@ static shape_pathtrace_options pathtrace_options(const cli_common *common)
     options.seed = common->seed;
     const cli_picture *v = &cli_picture_values;
     options.sun_angle = v->sun_angle;
-    if (noise_given) {
-        options.noise = noise;
+    if (noise_given || error_given) {
+        options.noise = noise_given ? noise : allowed;
         options.samples = samples_given ? (int)samples : 1 << 16;
     }
     options.lamp.position = shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]);
@@ -200,7 +206,7 @@ static void report(const picture_outcome *outcome, const shape_image *image, dou
 /* What is in the picture, and from where. */
 typedef struct picture {
     const shape_set *set;
-    const shape_volume *volume;
+    shape_volume *volume;
     const shape_opaque *opaque;
     shape_view view;
     shape_light light;
@@ -247,6 +253,21 @@ static picture_outcome trace(const cli_common *common, const picture *p)
     return outcome;
 }
 
+/* Steps, octaves and light for --error, and what they are. */
+static shape_budget_choice choose(const picture *p, shape_march_options *options)
+{
+    shape_error error;
+    shape_budget_choice choice;
+    cli_check(shape_budget_march(p->volume, &p->view, &p->light, options, allowed, &choice, &error), &error);
+    cli_say("%d steps, light grid of %d cells, %d of %d octaves, %zu of %zu clouds: an error of %.2g is "
+            "expected%s",
+            choice.steps, choice.cells, choice.octaves, choice.octaves_of, choice.seen, choice.clouds,
+            choice.predicted,
+            choice.predicted > allowed ? " (more than --error; there is nothing finer)" : "");
+    shape_budget_apply(&choice, p->volume, options);
+    return choice;
+}
+
 static picture_outcome march(const cli_common *common, const picture *p)
 {
     shape_error error;
@@ -259,9 +280,13 @@ static picture_outcome march(const cli_common *common, const picture *p)
     options.seed = common->seed;
     options.opaque = p->opaque;
     options.progress = show_progress;
+    shape_budget_choice choice = {0};
+    if (error_given)
+        choice = choose(p, &options);
     cli_check(shape_marcher_create(p->volume, &p->light, p->view.eye, &options, &marcher, &error), &error);
     cli_check(shape_march_render(marcher, &p->view, p->image->pixels, NULL, &error), &error);
     shape_marcher_destroy(marcher);
+    shape_budget_free(&choice);
     picture_outcome outcome = {method_names[MARCH], options.samples, -1};
     return outcome;
 }
@@ -282,6 +307,23 @@ static picture_outcome paper(const picture *p)
     return outcome;
 }
 
+static void check_error(void)
+{
+    static const char *const chosen[] = {"steps", "step", "light", "light-resolution"};
+    if (noise_given && error_given)
+        cli_wrong("--noise --error: they are the same (give one of them)");
+    if (error_given && method >= PAPER)
+        cli_wrong("--error: the methods of 2018 have one quality (choose reference or march)");
+    if (!error_given || method != MARCH)
+        return;
+    for (size_t i = 0; i < sizeof chosen / sizeof *chosen; i++)
+        if (cli_given(chosen[i]))
+            cli_wrong("--error --%s: --error chooses steps and light grid itself (give one of them)",
+                      chosen[i]);
+    if (!(allowed >= 1e-4 && allowed <= 1))
+        cli_wrong("--error %g: --method march takes 0.0001 to 1", allowed);
+}
+
 static void check_method(void)
 {
     int cells;
@@ -291,11 +333,12 @@ static void check_method(void)
         cli_wrong("--denoise belongs to --method reference");
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
+    check_error();
     if (method == MARCH)
         render_march_check(render_opaque_given());
     if (method != REFERENCE &&
         (noise_given || cli_picture_values.lamp_given || bounces_given || cli_picture_values.sun_angle_given))
-        cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
+        cli_wrong("--noise, --lamp, --max-bounces and --sun-angle belong to --method reference");
     if (method != REFERENCE && samples_given && samples > 4096)
         cli_wrong("--spp %d: --method %s takes at most 4096", (int)samples, method_names[method]);
     if (method >= PAPER && render_opaque_given())

@@ -22,10 +22,21 @@ static const cli_option size_options[] = {
      "voxels along the longest side of the bounds [256]", &vdb.resolution_given, false},
     {"error", 0, CLI_NUMBER, &vdb.error, 1e-4, 1, "E",
      "choose the voxels, or of a volume's fit the primitives, so that density is off by no more (root mean "
-     "square)",
+     "square); with a view, the voxels, so that its picture is off by no more",
      &vdb.error_given, false},
     {"max-memory", 0, CLI_INTEGER, &vdb.max_memory, 1048576, 1e15, "BYTES",
      "refuse what would need more, before any work [4294967296]", NULL, true},
+    {0}};
+
+static const cli_option view_options[] = {
+    {"size", 0, CLI_SIZE, cli_picture_values.size, 1, 16384, "WxH", "width and height, pixels [640x360]",
+     &cli_picture_values.size_given, false},
+    {"eye", 0, CLI_VECTOR, cli_picture_values.eye, -1e12, 1e12, "X,Y,Z",
+     "where one looks from, metres, y up [frames the cloud]", &cli_picture_values.eye_given, false},
+    {"target", 0, CLI_VECTOR, cli_picture_values.target, -1e12, 1e12, "X,Y,Z",
+     "what one looks at, metres [the middle]", &cli_picture_values.target_given, false},
+    {"fov", 0, CLI_NUMBER, &cli_picture_values.fov, 0.001, 179, "DEGREES",
+     "vertical field of view, degrees [45]", &cli_picture_values.fov_given, false},
     {0}};
 
 static const cli_option value_options[] = {
@@ -73,6 +84,7 @@ static const cli_option fit_options[] = {
     {0}};
 
 static const cli_group groups[] = {{"Voxels", size_options},
+                                   {"View that --error is for (docs/error.md)", view_options},
                                    {"Values of a volume written", value_options},
                                    {"File", file_options},
                                    {"A volume to primitives", fit_options},
@@ -91,6 +103,7 @@ static const cli_program program = {
     .examples = "  neph-vdb cumulus.neph -o cumulus.vdb                           for Blender\n"
                 "  neph-vdb cumulus.neph --up y --resolution 512 --half -o cumulus.nvdb\n"
                 "  neph-vdb cumulus.neph --error 0.1 --grids sdf,profile,light -o cumulus.vdb\n"
+                "  neph-vdb cumulus.neph --error 0.05 --eye 0,2,30 -o cumulus.vdb      for that view\n"
                 "  neph-vdb smoke.vdb -o smoke.neph --primitives 100\n",
     .min_arguments = 1,
     .max_arguments = 1,
@@ -116,6 +129,9 @@ static void check_command(vdb_format format, const cli_common *common)
 {
     if (vdb.voxel_size_given + vdb.resolution_given + vdb.error_given > 1)
         cli_wrong("--voxel-size, --resolution and --error all choose the voxels (give one of them)");
+    vdb.view = cli_given_of(view_options) != NULL;
+    if (vdb.view && !vdb.error_given)
+        cli_wrong("--%s: a view goes with --error, which chooses voxels for it", cli_given_of(view_options));
     if (vdb.ramp_given && vdb.error_given)
         cli_wrong("--ramp --error: a ramp is not the field that --error measures (give one of them)");
     if (format != VDB_FORMAT_RAW && vdb.header)
@@ -142,6 +158,7 @@ static void write_volume(const cli_common *common, const shape_set *set)
 static void fit_volume(const cli_common *common, const unsigned char *bytes, size_t size)
 {
     const char *output = common->output, *name = cli_given_of(value_options);
+    name = name ? name : cli_given_of(view_options);
     static const char *const others[] = {"resolution", "format", "half", "header"};
     for (size_t i = 0; i < sizeof others / sizeof *others && !name; i++)
         name = cli_given(others[i]) ? others[i] : NULL;

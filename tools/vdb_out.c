@@ -224,7 +224,7 @@ void vdb_write_volume(const cli_common *common, const shape_set *set, vdb_format
                    : shape_volume_create(set, &volume, &error),
               &error);
     make_requests(&p, set);
-    shape_voxel_lattice lattice = vdb_choose_lattice(common, volume, p.requests, p.count, format);
+    shape_voxel_lattice lattice = vdb_choose_lattice(common, set, volume, p.requests, p.count, format);
     if (format == VDB_FORMAT_RAW) {
         if (vdb.values)
             p.requests[0].scale = (double)leading_cloud(set, -1)->medium.extinction;

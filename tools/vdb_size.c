@@ -1,6 +1,8 @@
 /* Which voxels neph-vdb takes: as asked, or as an allowed error asks, and never more than the memory allowed. */
 #include <math.h>
 
+#include "cli_picture.h"
+#include "shape/budget.h"
 #include "vdb.h"
 
 /* Samples of the error, and how fine it may get: voxels along the longest side. */
@@ -111,9 +113,32 @@ static double edge_for_error(const question *q)
     return good;
 }
 
-shape_voxel_lattice vdb_choose_lattice(const cli_common *common, const shape_volume *volume,
-                                       const shape_voxel_request *requests, size_t request_count,
-                                       vdb_format format)
+/* The same for the picture of a view. */
+static double edge_for_view(const question *q, const shape_set *set)
+{
+    shape_error error;
+    shape_view view;
+    shape_light light;
+    double edge, predicted;
+    bool seen;
+    cli_picture_apply(set, &view, &light);
+    cli_check(shape_budget_voxel(q->volume, &view, &light, vdb.error, &edge, &predicted, &seen, &error),
+              &error);
+    if (!seen)
+        cli_fail("--error: the view shows none of the clouds (turn it: --eye, --target)");
+    if (!fits(q, edge))
+        cli_fail("--error %g: this view needs voxels of %.3g m, and --max-memory has room for %.3g m (allow "
+                 "more of either)",
+                 vdb.error, edge, smallest(q));
+    cli_say("voxels of %.4g m (--resolution %.0f): an error of %.2g is expected in the picture%s", edge,
+            ceil(q->longest / edge), predicted,
+            predicted > vdb.error ? " (more than --error; there is nothing finer)" : "");
+    return edge;
+}
+
+shape_voxel_lattice vdb_choose_lattice(const cli_common *common, const shape_set *set,
+                                       const shape_volume *volume, const shape_voxel_request *requests,
+                                       size_t request_count, vdb_format format)
 {
     shape_error error;
     shape_voxel_lattice lattice;
@@ -125,7 +150,9 @@ shape_voxel_lattice vdb_choose_lattice(const cli_common *common, const shape_vol
     for (int k = 0; k < 3; k++)
         q.longest = fmax(q.longest, q.max[k] - q.min[k]);
     double edge = vdb.voxel_size_given ? vdb.voxel_size : q.longest / (double)vdb.resolution;
-    if (vdb.error_given)
+    if (vdb.view)
+        edge = edge_for_view(&q, set);
+    else if (vdb.error_given)
         edge = edge_for_error(&q);
     else if (!fits(&q, edge)) {
         double good = smallest(&q);

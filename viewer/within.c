@@ -1,7 +1,7 @@
 /* A picture to an allowed error: drawn finer and finer, until twice as fine changes it by no more. */
 #include <math.h>
 
-#include "shape/imageerror.h"
+#include "shape/budget.h"
 #include "view.h"
 
 /* From coarse to fine; each has about twice the last one's light cells and voxels a side. */
@@ -32,16 +32,6 @@ static shape_status draw(const view_job *job, const view_quality *quality, const
     return status;
 }
 
-/* The square root of the relative MSE between two pictures. */
-static shape_status compare(const shape_image *a, const shape_image *b, double *change, shape_error *error)
-{
-    shape_imageerror measured;
-    shape_status status =
-        shape_imageerror_measure(a->pixels, b->pixels, a->width, a->height, &measured, error);
-    *change = status ? 0 : sqrt(measured.relmse);
-    return status;
-}
-
 shape_status view_draw_within(const view_job *job, const shape_view *view, const shape_light *light,
                               double allowed, shape_gl_renderer **renderer, view_quality *chosen,
                               double *change, shape_error *error)
@@ -58,7 +48,8 @@ shape_status view_draw_within(const view_job *job, const shape_view *view, const
         if (!status)
             status = view_read_image(*renderer, view->width, view->height, false, &image, error);
         if (!status && last)
-            status = compare(last, image, change, error);
+            status =
+                shape_budget_change(last->pixels, image->pixels, image->width, image->height, change, error);
         shape_image_destroy(last);
         last = image;
     }

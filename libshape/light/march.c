@@ -125,7 +125,7 @@ static void choose_steps(shape_marcher *m)
 static shape_status build_grid(shape_marcher *m, size_t i, shape_lightgrid *grid, shape_error *error)
 {
     shape_lightgrid_options options = shape_lightgrid_defaults();
-    options.resolution = m->options.resolution;
+    options.resolution = m->options.resolutions ? m->options.resolutions[i] : m->options.resolution;
     options.opaque = m->options.opaque;
     if (m->options.light == SHAPE_MARCH_GRID)
         return shape_lightgrid_build(m->volume, i, &m->light, &options, grid, error);
@@ -143,12 +143,14 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
 {
     march_cloud *cloud = &m->clouds[i];
     cloud->cloud = &m->volume->clouds[i];
-    if (shape_box_is_empty(cloud->cloud->box))
+    cloud->hidden = m->options.resolutions && m->options.resolutions[i] == 0;
+    if (cloud->hidden || shape_box_is_empty(cloud->cloud->box))
         return SHAPE_OK;
     shape_status status = build_grid(m, i, &cloud->grid, error);
+    const int *n = cloud->grid.size;
+    m->work->cells += (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
     if (status || m->options.light != SHAPE_MARCH_GRID)
         return status;
-    const int *n = cloud->grid.size;
     cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 4 * sizeof *cloud->seen);
     if (!cloud->seen)
         return shape_error_memory(error);
@@ -174,13 +176,17 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
     if (status)
         return status;
     shape_marcher *m = calloc(1, sizeof *m);
-    if (m)
-        m->clouds = calloc(volume->cloud_count + 1, sizeof *m->clouds);
-    if (!m || !m->clouds) {
+    if (!m)
+        return shape_error_memory(error);
+    m->volume = volume;
+    m->clouds = calloc(volume->cloud_count + 1, sizeof *m->clouds);
+    m->work = calloc(1, sizeof *m->work);
+    if (!m->clouds || !m->work) {
+        free(m->clouds);
+        free(m->work);
         free(m);
         return shape_error_memory(error);
     }
-    m->volume = volume;
     m->light = *light;
     m->sky = shape_sky_make(light);
     m->options = *options;
@@ -190,6 +196,7 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
     status = make_blue(m, error);
     for (size_t i = 0; i < volume->cloud_count && !status; i++)
         status = light_cloud(m, i, eye, error);
+    m->options.resolutions = NULL;
     if (status) {
         shape_marcher_destroy(m);
         return status;
@@ -207,8 +214,14 @@ void shape_marcher_destroy(shape_marcher *m)
         free(m->clouds[i].seen);
     }
     free(m->clouds);
+    free(m->work);
     free(m->blue);
     free(m);
+}
+
+shape_march_work shape_marcher_work(const shape_marcher *m)
+{
+    return *m->work;
 }
 
 void shape_march_scratch_free(shape_march_scratch *scratch)
@@ -323,7 +336,7 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
                      SHAPE_OK, error,  {0, 0, 0}, 0,       {0, 0, 0}};
     size_t count;
     shape_opaque_hit hit;
-    shape_status status = march_path_find(marcher, &scratch->view, origin, direction, &count, error);
+    shape_status status = march_path_find(marcher, &scratch->view, origin, direction, false, &count, error);
     if (status)
         return status;
     bool met = shape_opaque_find(marcher->options.opaque, origin, direction, INFINITY, &hit);
@@ -400,6 +413,9 @@ static shape_status render_row(void *context, int y)
     memset(&scratch, 0, sizeof scratch);
     for (int x = 0; x < picture->view->width && !status; x++)
         status = render_pixel(picture->marcher, picture->view, &picture->camera, x, y, &scratch, out + 3 * x);
+    uint64_t *looks = &picture->marcher->work->looks;
+#pragma omp atomic
+    *looks += scratch.looks;
     shape_march_scratch_free(&scratch);
     return status;
 }

@@ -11,6 +11,7 @@ typedef struct march_cloud {
     const shape_volume_cloud *cloud;
     shape_lightgrid grid; /* of all light, of depths, or that of 2018; else without cells */
     float *seen;          /* SHAPE_MARCH_GRID: its cells as the eye sees them, RGB and 0 */
+    bool hidden;          /* it throws shadows, and is not drawn */
 } march_cloud;
 
 struct shape_marcher {
@@ -23,6 +24,7 @@ struct shape_marcher {
     shape_dvec3 low, high; /* the world box around all clouds */
     march_cloud *clouds;
     uint16_t *blue; /* SHAPE_JITTER_BLUE */
+    shape_march_work *work;
 };
 
 /* The extinction at t along the ray [1/m], and the radiance that it adds to the ray a metre. */
@@ -44,9 +46,9 @@ typedef struct march_ray {
 
 /* --- march_path.c: the joined intervals of all clouds on a ray --- */
 
-/* Fills path->edges with *count edges, pairs sorted by their start and apart from each other. */
+/* Fills path->edges with *count edges, pairs sorted by their start and apart from each other. all: of hidden clouds too. */
 shape_status march_path_find(const shape_marcher *marcher, shape_march_path *path, shape_dvec3 origin,
-                             shape_dvec3 direction, size_t *count, shape_error *error);
+                             shape_dvec3 direction, bool all, size_t *count, shape_error *error);
 /* Extinction of all clouds at t on that ray. */
 double march_path_extinction(const shape_marcher *marcher, const shape_march_path *path, shape_dvec3 origin,
                              shape_dvec3 direction, float t);

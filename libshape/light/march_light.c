@@ -116,6 +116,7 @@ march_sample march_look(march_ray *ray, float t)
     const shape_marcher *m = ray->marcher;
     march_sample sample = {0, {0, 0, 0}};
     shape_dvec3 origin = shape_dvec3_add(ray->origin, ray->shift);
+    ray->scratch->looks++;
     for (size_t i = 0; i < m->volume->cloud_count; i++) {
         const shape_volume_cloud *cloud = m->clouds[i].cloud;
         if (!ray->scratch->view.views[i].count)

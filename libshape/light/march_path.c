@@ -49,7 +49,7 @@ static size_t join(float *edges, size_t count)
 }
 
 shape_status march_path_find(const shape_marcher *marcher, shape_march_path *path, shape_dvec3 origin,
-                             shape_dvec3 direction, size_t *count, shape_error *error)
+                             shape_dvec3 direction, bool all, size_t *count, shape_error *error)
 {
     const shape_volume *volume = marcher->volume;
     shape_status status = prepare(path, volume->cloud_count, error);
@@ -60,6 +60,8 @@ shape_status march_path_find(const shape_marcher *marcher, shape_march_path *pat
         shape_candidates *found = &path->views[i];
         float t0 = 0, t1 = INFINITY, a, b;
         found->count = 0;
+        if (marcher->clouds[i].hidden && !all)
+            continue;
         if (!shape_box_intersect(cloud->box, local, &t0, &t1))
             continue;
         status = shape_cloud_candidates(cloud, local, t0, t1, found, error);

@@ -107,7 +107,7 @@ double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo)
     if (shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
         return 0;
     if (!ray->status)
-        ray->status = march_path_find(m, path, world, m->light.sun, &count, ray->error);
+        ray->status = march_path_find(m, path, world, m->light.sun, true, &count, ray->error);
     if (ray->status)
         return 0;
     for (size_t i = 0; i < count; i += 2) {

@@ -77,6 +77,8 @@ typedef struct shape_march_options {
                       2 tan(fov / 2) / height */
     double light_step; /* of the march to the sun [m]; 0: twice the step */
     int resolution;    /* of grids of light, cells along a cloud's longest side, 2 to 256; default 48 */
+    const int *resolutions; /* one a cloud, in place of `resolution`; 0: the cloud is not drawn and has no grid, and only
+                               throws shadows. Read by shape_marcher_create alone. NULL (default): all alike */
     int samples;       /* rays a pixel, 1 to 4096; default 1 */
     double powder;     /* k of the powder laws, 0 to 1000; default 2 */
     double shade; /* multiplies depths to the sun, 0 to 1 (sigma' of Páleník 2016 section 3.3); default 1 */
@@ -115,6 +117,7 @@ typedef struct shape_march_path {
 typedef struct shape_march_scratch {
     shape_march_path view, sun;
     shape_candidates shadow;
+    uint64_t looks; /* at points on the rays so far */
 } shape_march_scratch;
 void shape_march_scratch_free(shape_march_scratch *scratch);
 
@@ -127,6 +130,12 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
 /* Renders: width * height RGB triples from the upper left. The same for any number of threads. cancelled may be NULL. */
 shape_status shape_march_render(const shape_marcher *marcher, const shape_view *view, float *radiance,
                                 bool *cancelled, shape_error *error);
+
+/* What a marcher has done: cells of all light grids, and points of the pictures' rays that were looked at. */
+typedef struct shape_march_work {
+    uint64_t cells, looks;
+} shape_march_work;
+shape_march_work shape_marcher_work(const shape_marcher *marcher);
 
 #ifdef __cplusplus
 }
