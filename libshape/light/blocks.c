@@ -22,7 +22,7 @@ static int choose_edge(const block_grid *b)
     for (int a = 0; a < 3; a++)
         square += b->to_local[a][0] * b->to_local[a][0];
     return (double)(b->grid->most * b->grid->gain * b->extinction) * BRICK / sqrt(square) > deep ? BRICK / 2
-                                                                                              : BRICK;
+                                                                                                 : BRICK;
 }
 
 /* The range of the values at the points low[] to low[] + width of a brick. */

@@ -37,7 +37,7 @@ static shape_status too_large(double bytes, size_t max_bytes, const int points[3
 static shape_status lay_out(shape_grid *grid, const shape_grid_source *source, size_t max_bytes,
                             shape_error *error)
 {
-    const double brick_bytes = POINTS * sizeof(float) + 2 * sizeof(float);
+    const double brick_bytes = POINTS * sizeof(float) + 2 * sizeof(float) + sizeof *grid->filled;
     double cells = 1;
     for (int a = 0; a < 3; a++) {
         if (source->points[a] < 2 || source->points[a] > SHAPE_GRID_MAX_SIDE)
@@ -64,7 +64,8 @@ static shape_status lay_out(shape_grid *grid, const shape_grid_source *source, s
     grid->values = malloc(count * POINTS * sizeof *grid->values);
     grid->low = calloc(count, sizeof *grid->low);
     grid->high = calloc(count, sizeof *grid->high);
-    if (!grid->table || !grid->values || !grid->low || !grid->high)
+    grid->filled = calloc(count, sizeof *grid->filled);
+    if (!grid->table || !grid->values || !grid->low || !grid->high || !grid->filled)
         return shape_error_memory(error);
     memset(grid->values, 0, POINTS * sizeof *grid->values);
     grid->brick_count = 1;
@@ -88,6 +89,24 @@ static bool measure(float *values, float *low, float *high)
     *low = least;
     *high = most;
     return !wrong;
+}
+
+/* Which parts touch a point that is not 0. A point belongs to one part along an axis, or as their common face to two. */
+static uint64_t find_filled(const float *values)
+{
+    static const unsigned parts[SIDE] = {1, 1, 3, 2, 6, 4, 12, 8, 8};
+    uint64_t filled = 0;
+    for (unsigned z = 0; z < SIDE; z++)
+        for (unsigned y = 0; y < SIDE; y++) {
+            uint64_t row = 0, plane = 0;
+            for (unsigned x = 0; x < SIDE; x++)
+                row |= values[(z * SIDE + y) * SIDE + x] > 0 ? parts[x] : 0;
+            for (unsigned part = 0; part < 4; part++)
+                plane |= parts[y] >> part & 1 ? row << 4 * part : 0;
+            for (unsigned part = 0; part < 4 && plane; part++)
+                filled |= parts[z] >> part & 1 ? plane << 16 * part : 0;
+        }
+    return filled;
 }
 
 static shape_status fill(shape_grid *grid, const shape_grid_source *source, shape_error *error)
@@ -117,6 +136,7 @@ static shape_status fill(shape_grid *grid, const shape_grid_source *source, shap
             }
             even = next;
         }
+        grid->filled[next] = find_filled(values);
         grid->most = most > grid->most ? most : grid->most;
         grid->table[i] = (uint32_t)next;
         grid->brick_count++;
@@ -168,6 +188,7 @@ void shape_grid_release(shape_grid *grid)
     free(grid->values);
     free(grid->low);
     free(grid->high);
+    free(grid->filled);
     free(grid);
 }
 

@@ -24,18 +24,28 @@ static inline float grid_in_cell(const float *v, float x, float y, float z)
     return grid_mix(a, b, z);
 }
 
-static inline float grid_look(const shape_grid *grid, float px, float py, float pz)
+/* The lowest corner of the cell that a place is in, and which cell; NULL where its part of the brick holds nothing. */
+static inline const float *grid_find(const shape_grid *grid, float px, float py, float pz, unsigned cell[3])
 {
     if (!(px >= 0 && py >= 0 && pz >= 0 && px < (float)(grid->points[0] - 1) &&
           py < (float)(grid->points[1] - 1) && pz < (float)(grid->points[2] - 1)))
-        return 0;
+        return NULL;
     unsigned x = (unsigned)px, y = (unsigned)py, z = (unsigned)pz, b = SHAPE_GRID_BRICK;
     size_t brick = grid_brick(grid, x / b, y / b, z / b);
-    if (!brick)
-        return 0;
-    const float *v = grid->values + brick * SHAPE_GRID_BRICK_POINTS +
-                     ((z % b) * SHAPE_GRID_SIDE + y % b) * SHAPE_GRID_SIDE + x % b;
-    return grid->gain * grid_in_cell(v, px - (float)x, py - (float)y, pz - (float)z);
+    /* The empty brick has no filled part. */
+    if (!(grid->filled[brick] >> ((z % b / 2 * 4 + y % b / 2) * 4 + x % b / 2) & 1))
+        return NULL;
+    cell[0] = x, cell[1] = y, cell[2] = z;
+    return grid->values + brick * SHAPE_GRID_BRICK_POINTS +
+           ((z % b) * SHAPE_GRID_SIDE + y % b) * SHAPE_GRID_SIDE + x % b;
+}
+
+/* The value at a place [voxels], times the gain. */
+static inline float grid_look(const shape_grid *grid, float x, float y, float z)
+{
+    unsigned cell[3];
+    const float *v = grid_find(grid, x, y, z, cell);
+    return v ? grid->gain * grid_in_cell(v, x - (float)cell[0], y - (float)cell[1], z - (float)cell[2]) : 0;
 }
 
 #endif
