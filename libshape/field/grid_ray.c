@@ -139,41 +139,57 @@ grid_way grid_way_make(const shape_grid *grid, shape_vec3 direction)
     return way;
 }
 
-/* Starts among the bricks; false where the ray does not meet them. */
-static bool way_start(const grid_way *way, walk *w, shape_vec3 from)
+/* Where a ray enters the grid; infinite where it misses it. Most begin inside. */
+static double way_entry(const grid_way *way, const double p[3], const double d[3])
+{
+    double t = 0, end = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        double last = way->grid->points[a] - 1;
+        if (p[a] >= 0 && p[a] <= last)
+            continue;
+        if (!(d[a] < 0 || d[a] > 0))
+            return INFINITY;
+        double near = -p[a] * way->inverse[a], far = (last - p[a]) * way->inverse[a];
+        t = greatest(t, least(near, far));
+        end = least(end, greatest(near, far));
+    }
+    return t < end ? t : INFINITY;
+}
+
+/* A walk over bricks that knows only how many are left along each axis. */
+typedef struct way_walk {
+    const uint32_t *brick;
+    ptrdiff_t stride[3];
+    int left[3];
+    double t, next[3];
+} way_walk;
+
+static bool way_start(const grid_way *way, way_walk *w, shape_vec3 from)
 {
     const double p[3] = {(double)from.x, (double)from.y, (double)from.z},
                  d[3] = {(double)way->direction.x, (double)way->direction.y, (double)way->direction.z};
-    w->t = 0;
-    w->end = INFINITY;
-    for (int a = 0; a < 3; a++) {
-        double last = way->grid->points[a] - 1;
-        if (d[a] == 0) {
-            if (!(p[a] >= 0 && p[a] <= last))
-                return false;
-            continue;
-        }
-        double near = -p[a] * way->inverse[a], far = (last - p[a]) * way->inverse[a];
-        w->t = greatest(w->t, least(near, far));
-        w->end = least(w->end, greatest(near, far));
-    }
-    if (!(w->t < w->end))
+    const int *bricks = way->grid->bricks;
+    ptrdiff_t stride = 1;
+    w->t = way_entry(way, p, d);
+    w->brick = way->grid->table;
+    if (!(w->t < INFINITY))
         return false;
     for (int a = 0; a < 3; a++) {
         double place = (p[a] + d[a] * w->t) * (1.0 / BRICK);
-        w->count[a] = way->grid->bricks[a];
-        w->at[a] = (int)least(greatest(place, 0), w->count[a] - 1);
-        w->step[a] = d[a] < 0 ? -1 : 1;
-        w->delta[a] = way->delta[a];
-        w->next[a] =
-            d[a] == 0 ? INFINITY : ((w->at[a] + (d[a] > 0)) * (double)BRICK - p[a]) * way->inverse[a];
+        int at = (int)least(greatest(place, 0), bricks[a] - 1);
+        bool up = d[a] > 0;
+        w->brick += at * stride;
+        w->left[a] = up ? bricks[a] - 1 - at : at;
+        w->stride[a] = up ? stride : -stride;
+        w->next[a] = d[a] < 0 || up ? ((at + up) * (double)BRICK - p[a]) * way->inverse[a] : INFINITY;
+        stride *= bricks[a];
     }
     return true;
 }
 
 double grid_way_depth(const grid_way *way, shape_vec3 from, float step, double enough)
 {
-    walk w;
+    way_walk w;
     shape_vec3 d = way->direction;
     double next = -1; /* where the next step is looked at; negative: the last brick was empty */
     float sum = 0, most = (float)least(enough / (double)step, 1e30);
@@ -181,20 +197,22 @@ double grid_way_depth(const grid_way *way, shape_vec3 from, float step, double e
         return integrate(way->grid, from, d, 0, INFINITY, enough);
     if (!way_start(way, &w, from))
         return 0;
-    do {
-        if (!brick_at(way->grid, w.at)) {
+    for (int a = 0;; w.t = w.next[a], w.next[a] += way->delta[a], w.brick += w.stride[a]) {
+        a = w.next[0] < w.next[1] ? (w.next[0] < w.next[2] ? 0 : 2) : (w.next[1] < w.next[2] ? 1 : 2);
+        if (!*w.brick) {
             next = -1;
-            continue;
+        } else {
+            next = next < 0 ? w.t + (double)step / 2 : next;
+            for (; next < w.next[a]; next += (double)step) {
+                float t = (float)next;
+                sum += grid_look(way->grid, from.x + d.x * t, from.y + d.y * t, from.z + d.z * t);
+                if (sum >= most)
+                    return (double)sum * (double)step;
+            }
         }
-        double exit = walk_exit(&w);
-        for (next = next < 0 ? w.t + (double)step / 2 : next; next < exit; next += (double)step) {
-            float t = (float)next;
-            sum += grid_look(way->grid, from.x + d.x * t, from.y + d.y * t, from.z + d.z * t);
-            if (sum >= most)
-                return (double)sum * (double)step;
-        }
-    } while (walk_next(&w));
-    return (double)sum * (double)step;
+        if (--w.left[a] < 0)
+            return (double)sum * (double)step;
+    }
 }
 
 shape_status grid_candidates(const shape_grid *grid, shape_ray ray, float t_min, float t_max,
