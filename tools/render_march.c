@@ -6,7 +6,7 @@
 static struct march_values {
     int rule, stepping, jitter, end, light, shadow;
     int64_t steps, light_steps, resolution;
-    double growth, pixels, powder, shade, forward, emission[3], lock, alpha_power, alpha_peel;
+    double growth, pixels, powder, shade, forward, emission[3], lock, cutoff, alpha_power, alpha_peel;
     bool silver;
     bool any_given, steps_given, growth_given, pixels_given, end_given, shadow_given, light_steps_given,
         resolution_given, powder_given, shade_given, forward_given;
@@ -20,6 +20,7 @@ static struct march_values {
             .powder = 2,
             .shade = 1,
             .forward = 0.5,
+            .cutoff = 1e-8,
             .alpha_power = 1};
 
 const cli_option render_march_options[] = {
@@ -62,6 +63,8 @@ const cli_option render_march_options[] = {
      "phase with g = 1 - opacity of a step: bright thin rims [off]", &values.any_given, false},
     {"lock", 0, CLI_NUMBER, &values.lock, 0, 1e9, "F",
      "ray starts go to a grid of F points a metre; 0: they stay [0]", &values.any_given, false},
+    {"cutoff", 0, CLI_NUMBER, &values.cutoff, 1e-12, 0.1, "T",
+     "rays, and ways to the sun, end where less than T gets through [1e-8]", &values.any_given, false},
     {"alpha-power", 0, CLI_NUMBER, &values.alpha_power, 0.01, 100, "K",
      "coverage is raised to that power [1]", &values.any_given, false},
     {"alpha-peel", 0, CLI_NUMBER, &values.alpha_peel, 0, 1, "A", "pixels covered less show no cloud [0]",
@@ -143,6 +146,7 @@ shape_march_options render_march_make(double side, const shape_view *view)
         options.emission[c] = (float)v->emission[c];
     options.silver = v->silver;
     options.lock = v->lock;
+    options.cutoff = v->cutoff;
     options.alpha_power = v->alpha_power;
     options.alpha_peel = v->alpha_peel;
     return options;

@@ -38,6 +38,9 @@ def arguments():
     parser.add_argument("--samples", type=int, default=32, help="a pixel [32]")
     parser.add_argument("--bounces", type=int, default=1024, help="within the volume [1024]")
     parser.add_argument("--step-rate", type=float, default=1, help="of Cycles' march, in voxels [1]")
+    parser.add_argument("--seed", type=int, default=0, help="of the samples [0]")
+    parser.add_argument("--filter", choices=["blackman-harris", "box"], default="blackman-harris",
+                        help="of a pixel: Cycles' own, or that of neph-render [blackman-harris]")
     parser.add_argument("--threads", type=int, default=0, help="[all]")
     parser.add_argument("--render", metavar="FILE.exr", help="render to linear OpenEXR")
     parser.add_argument("--check", action="store_true", help="print grids and bounds as JSON")
@@ -136,6 +139,9 @@ def set_up(scene, wanted):
     cycles.max_bounces = cycles.volume_bounces = wanted.bounces
     cycles.sample_clamp_indirect = 0  # clamping loses light
     cycles.volume_step_rate = wanted.step_rate
+    cycles.seed = wanted.seed
+    if wanted.filter == "box":
+        cycles.pixel_filter_type = "BOX"
     scene.render.resolution_x, scene.render.resolution_y = (int(n) for n in wanted.size.split("x"))
     scene.render.resolution_percentage = 100
     scene.view_settings.view_transform = "Raw"

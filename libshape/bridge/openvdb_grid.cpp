@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetUtil.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -96,33 +97,78 @@ struct Source {
     openvdb::Coord origin;
 };
 
-// Whether the leaf, or the tile, that holds a point has anything. A brick touches at most those of its eight corners.
-bool has_any(Source &source, const openvdb::Coord &low)
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+// The points of a brick that lie in one leaf or tile: from low to high, both among them.
+struct Part {
+    openvdb::Coord low, high;
+};
+
+// Active values of a leaf; a word of its mask is one x, with eight bits for each y.
+void copy_leaf(const Leaf &leaf, const Part &part, const openvdb::Coord &first, float *values)
 {
-    for (int corner = 0; corner < 8; corner++) {
-        openvdb::Coord at = low.offsetBy(corner & 1 ? SHAPE_GRID_BRICK : 0, corner & 2 ? SHAPE_GRID_BRICK : 0,
-                                         corner & 4 ? SHAPE_GRID_BRICK : 0);
-        const auto *leaf = source.values.probeConstLeaf(at);
-        if (leaf ? !leaf->isEmpty() : source.values.isValueOn(at))
-            return true;
+    const float *from = leaf.buffer().data();
+    for (int x = part.low.x(); x <= part.high.x(); x++) {
+        uint64_t active = leaf.valueMask().getWord<uint64_t>(openvdb::Index(x & 7));
+        for (int y = part.low.y(); y <= part.high.y(); y++) {
+            unsigned row = unsigned(active >> ((y & 7) * 8)) & 0xff;
+            const float *at = from + ((x & 7) << 6 | (y & 7) << 3);
+            float *to = values + (y - first.y()) * SHAPE_GRID_SIDE + (x - first.x());
+            for (int z = part.low.z(); row && z <= part.high.z(); z++)
+                if (row >> (z & 7) & 1)
+                    to[(z - first.z()) * SHAPE_GRID_SIDE * SHAPE_GRID_SIDE] = at[z & 7];
+        }
     }
-    return false;
 }
 
+void fill_part(const Part &part, const openvdb::Coord &first, float value, float *values)
+{
+    for (int z = part.low.z(); z <= part.high.z(); z++)
+        for (int y = part.low.y(); y <= part.high.y(); y++)
+            for (int x = part.low.x(); x <= part.high.x(); x++)
+                values[((z - first.z()) * SHAPE_GRID_SIDE + (y - first.y())) * SHAPE_GRID_SIDE +
+                       (x - first.x())] = value;
+}
+
+// What one leaf or tile has of a brick. values may be null. False where that is nothing.
+bool take_part(Source &source, const Part &part, const openvdb::Coord &first, float *values)
+{
+    float value = 0;
+    const Leaf *leaf = source.values.probeConstLeaf(part.low);
+    if (leaf) {
+        if (leaf->isEmpty())
+            return false;
+        if (values)
+            copy_leaf(*leaf, part, first, values);
+        return true;
+    }
+    if (!source.values.probeValue(part.low, value))
+        return false;
+    if (values)
+        fill_part(part, first, value, values);
+    return true;
+}
+
+// Leaf by leaf: a brick has points of at most two along each axis.
 bool fill_brick(void *context, const int low[3], float *values)
 {
     Source &source = *static_cast<Source *>(context);
-    openvdb::Coord first = source.origin.offsetBy(low[0], low[1], low[2]);
-    if (!has_any(source, first))
-        return false;
-    for (int z = 0; z < SHAPE_GRID_SIDE && values; z++)
-        for (int y = 0; y < SHAPE_GRID_SIDE; y++)
-            for (int x = 0; x < SHAPE_GRID_SIDE; x++) {
-                float value = 0;
-                bool active = source.values.probeValue(first.offsetBy(x, y, z), value);
-                *values++ = active ? value : 0;
-            }
-    return true;
+    openvdb::Coord first = source.origin.offsetBy(low[0], low[1], low[2]),
+                   last = first.offsetBy(SHAPE_GRID_BRICK), middle = last & ~7;
+    bool any = false;
+    if (values)
+        std::fill_n(values, int(SHAPE_GRID_BRICK_POINTS), 0.0f);
+    for (int corner = 0; corner < 8; corner++) {
+        Part part = {first, last};
+        for (int a = 0; a < 3; a++) {
+            if (corner >> a & 1)
+                part.low[a] = middle[a];
+            else
+                part.high[a] = middle[a] - 1;
+        }
+        any = take_part(source, part, first, values) || any;
+    }
+    return any;
 }
 
 shape_status convert(const openvdb::FloatGrid &grid, const shape_vdb_read_options &options,

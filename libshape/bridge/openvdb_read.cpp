@@ -123,7 +123,8 @@ void load(const char *path, const shape_vdb_read_options &options, Message &mess
                send(to, grid.table, cells_of(grid) * sizeof *grid.table) &&
                send(to, grid.values, grid.brick_count * SHAPE_GRID_BRICK_POINTS * sizeof *grid.values) &&
                send(to, grid.low, grid.brick_count * sizeof *grid.low) &&
-               send(to, grid.high, grid.brick_count * sizeof *grid.high);
+               send(to, grid.high, grid.brick_count * sizeof *grid.high) &&
+               send(to, grid.filled, grid.brick_count * sizeof *grid.filled);
     }
     _exit(sent ? 0 : 1);
 }
@@ -164,12 +165,14 @@ bool receive_grid(int from, shape_grid *grid)
     grid->values = static_cast<float *>(std::malloc(bricks * SHAPE_GRID_BRICK_POINTS * sizeof *grid->values));
     grid->low = static_cast<float *>(std::malloc(bricks * sizeof *grid->low));
     grid->high = static_cast<float *>(std::malloc(bricks * sizeof *grid->high));
-    if (!grid->table || !grid->values || !grid->low || !grid->high)
+    grid->filled = static_cast<uint64_t *>(std::malloc(bricks * sizeof *grid->filled));
+    if (!grid->table || !grid->values || !grid->low || !grid->high || !grid->filled)
         return false;
     if (!receive(from, grid->table, cells * sizeof *grid->table) ||
         !receive(from, grid->values, bricks * SHAPE_GRID_BRICK_POINTS * sizeof *grid->values) ||
         !receive(from, grid->low, bricks * sizeof *grid->low) ||
-        !receive(from, grid->high, bricks * sizeof *grid->high))
+        !receive(from, grid->high, bricks * sizeof *grid->high) ||
+        !receive(from, grid->filled, bricks * sizeof *grid->filled))
         return false;
     for (size_t i = 0; i < cells; i++)
         if (grid->table[i] >= bricks)
@@ -201,6 +204,7 @@ shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_con
     *grid = message.grid;
     grid->table = nullptr;
     grid->values = grid->low = grid->high = nullptr;
+    grid->filled = nullptr;
     grid->users = 1;
     if (!receive_grid(from, grid)) {
         shape_grid_release(grid);

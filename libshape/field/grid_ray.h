@@ -10,4 +10,17 @@
 shape_status grid_candidates(const shape_grid *grid, shape_ray ray, float t_min, float t_max,
                              shape_candidates *found, shape_error *error);
 
+/* A direction in which many rays go through a grid, made ready: towards the sun. */
+typedef struct grid_way {
+    const shape_grid *grid;
+    shape_vec3 direction; /* voxels a unit of t */
+    double inverse[3], delta[3];
+} grid_way;
+
+grid_way grid_way_make(const shape_grid *grid, shape_vec3 direction);
+
+/* The integral of density over t along that way: cell by cell where a step of t is at most a voxel, else by such steps,
+ * seen from their middles, that begin where bricks do that hold anything. It ends where the sum passes `enough`. */
+double grid_way_depth(const grid_way *way, shape_vec3 from, float step, double enough);
+
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "field/lattice.h"
+#include "light/blocks.h"
 #include "shape/grid.h"
 
 #define ALL_PRIMITIVES UINT32_MAX
@@ -546,6 +547,13 @@ static void size_cells(majorant_grid *grid)
     }
 }
 
+static shape_status add_blocks(majorant_grid *grid, shape_error *error)
+{
+    grid->blocks = malloc(sizeof *grid->blocks);
+    return grid->blocks ? block_grid_build(grid->blocks, grid->clouds[0].cloud, grid->origin, error)
+                        : shape_error_memory(error);
+}
+
 shape_status majorant_grid_build(majorant_grid *grid, const shape_volume *volume, shape_error *error)
 {
     memset(grid, 0, sizeof *grid);
@@ -559,6 +567,8 @@ shape_status majorant_grid_build(majorant_grid *grid, const shape_volume *volume
         status = prepare_cloud(grid, &volume->clouds[i], &grid->clouds[i], error);
         grid->cloud_count = i + 1;
     }
+    if (!status && volume->cloud_count == 1 && volume->clouds[0].field.model == SHAPE_MODEL_GRID)
+        return add_blocks(grid, error);
     while (!status) {
         found_list found = {NULL, NULL};
         size_cells(grid);
@@ -581,6 +591,9 @@ void majorant_grid_free(majorant_grid *grid)
 {
     for (size_t i = 0; i < grid->cloud_count; i++)
         free(grid->clouds[i].ellipsoids);
+    if (grid->blocks)
+        block_grid_free(grid->blocks);
+    free(grid->blocks);
     free(grid->clouds);
     free(grid->cells);
     free(grid->groups);

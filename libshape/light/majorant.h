@@ -49,6 +49,8 @@ typedef struct majorant_grid {
     uint32_t *entries;
     majorant_cloud *clouds;
     size_t cloud_count;
+    struct block_grid
+        *blocks; /* of a volume that is one voxel grid (light/blocks.h); there are no cells then */
 } majorant_grid;
 
 /* Builds the grid; n is 0 for a volume without density. Free it by majorant_grid_free, also after an error. */

@@ -8,9 +8,8 @@
 #include <string.h>
 
 #include "light/rows.h"
+#include "primitive/grid_look.h"
 
-/* Beyond that depth nothing is seen: 1e-8. */
-static const double deep_enough = 18.4;
 enum { MAX_PANELS = 100000 };
 
 /* --- options --- */
@@ -28,6 +27,7 @@ shape_march_options shape_march_defaults(void)
     options.powder = 2;
     options.shade = 1;
     options.forward = 0.5;
+    options.cutoff = 1e-8;
     options.alpha_power = 1;
     options.seed = 1;
     return options;
@@ -77,6 +77,8 @@ static const char *find_wrong_number(const shape_march_options *o)
             return "emission: must be from 0 to 1e9";
     if (!(o->lock >= 0 && o->lock <= 1e9))
         return "lock: must be from 0 to 1e9 points a metre";
+    if (!(o->cutoff >= 1e-12 && o->cutoff <= 0.1))
+        return "cutoff: must be from 1e-12 to 0.1";
     if (!(o->alpha_power >= 0.01 && o->alpha_power <= 100))
         return "alpha_power: must be from 0.01 to 100";
     if (!(o->alpha_peel >= 0 && o->alpha_peel <= 1))
@@ -119,6 +121,10 @@ static void choose_steps(shape_marcher *m)
     longest = longest > 0 ? longest : 1;
     m->step = m->options.step > 0 ? m->options.step : longest / 100;
     m->light_step = m->options.light_step > 0 ? m->options.light_step : 2 * m->step;
+    m->deep = -log(m->options.cutoff);
+    if (m->volume->cloud_count == 1 && m->volume->clouds[0].field.model == SHAPE_MODEL_GRID &&
+        !(m->options.lock > 0))
+        m->voxels = m->volume->clouds[0].list->grid;
 }
 
 /* The grid that the options' light looks up, if any. */
@@ -144,6 +150,10 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
     march_cloud *cloud = &m->clouds[i];
     cloud->cloud = &m->volume->clouds[i];
     cloud->hidden = m->options.resolutions && m->options.resolutions[i] == 0;
+    shape_dvec3 sun = shape_frame_direction(&cloud->cloud->inverse, m->light.sun);
+    if (cloud->cloud->field.model == SHAPE_MODEL_GRID)
+        cloud->sun = grid_way_make(cloud->cloud->list->grid,
+                                   shape_vec3_make((float)sun.x, (float)sun.y, (float)sun.z));
     if (cloud->hidden || shape_box_is_empty(cloud->cloud->box))
         return SHAPE_OK;
     shape_status status = build_grid(m, i, &cloud->grid, error);
@@ -270,15 +280,25 @@ static double panel_end(const panels *p, double x)
     return p->from + p->length * share;
 }
 
+static inline bool is_empty(const shape_grid *grid, const shape_ray *ray, float t)
+{
+    unsigned cell[3];
+    return !grid_find(grid, ray->origin.x + ray->direction.x * t, ray->origin.y + ray->direction.y * t,
+                      ray->origin.z + ray->direction.z * t, cell);
+}
+
 /* Marches the panels up to `end`, where something opaque stands. */
 static void march_panels(march_ray *ray, const panels *p, float end)
 {
     shape_rule rule = ray->marcher->options.rule;
+    const shape_grid *voxels = rule == SHAPE_RULE_EXPONENTIAL ? ray->marcher->voxels : NULL;
+    shape_ray local = ray->scratch->view.rays[0];
     float a = (float)p->from;
     /* A step that begins later makes the first one shorter and adds one. */
-    for (double x = ray->first; ray->depth < deep_enough && a < end; x++) {
+    for (double x = ray->first; ray->depth < ray->marcher->deep && a < end; x++) {
         float b = fminf((float)panel_end(p, x), end);
-        if (b > a)
+        /* Most steps by voxels are seen where there is nothing. */
+        if (b > a && !(voxels && is_empty(voxels, &local, a + (b - a) * 0.5f)))
             march_panel(ray, rule, a, b);
         a = b;
         if (x >= p->count)
@@ -339,7 +359,8 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
     shape_status status = march_path_find(marcher, &scratch->view, origin, direction, false, &count, error);
     if (status)
         return status;
-    bool met = shape_opaque_find(marcher->options.opaque, origin, direction, INFINITY, &hit);
+    bool met = marcher->options.opaque &&
+               shape_opaque_find(marcher->options.opaque, origin, direction, INFINITY, &hit);
     /* A few roundings before the surface (Páleník's bias b), or a sample at the end could lie behind it, in its shadow. */
     float end = met ? (float)(hit.t * (1 - 2.5e-7)) : INFINITY;
     for (size_t i = 0; i < count && scratch->view.edges[i] < end; i += 2)

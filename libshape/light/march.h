@@ -2,6 +2,7 @@
 #ifndef SHAPE_LIGHT_MARCH_H
 #define SHAPE_LIGHT_MARCH_H
 
+#include "field/grid_ray.h"
 #include "light/bluenoise.h"
 #include "shape/lightgrid.h"
 #include "shape/march.h"
@@ -10,6 +11,7 @@
 typedef struct march_cloud {
     const shape_volume_cloud *cloud;
     shape_lightgrid grid; /* of all light, of depths, or that of 2018; else without cells */
+    grid_way sun;         /* model grid: towards it, t in metres */
     float *seen;          /* SHAPE_MARCH_GRID: its cells as the eye sees them, RGB and 0 */
     bool hidden;          /* it throws shadows, and is not drawn */
 } march_cloud;
@@ -21,6 +23,8 @@ struct shape_marcher {
     float upper[3], lower[3]; /* mean radiance of the sky's halves */
     shape_march_options options;
     double step, light_step;
+    double deep;           /* the optical depth of options.cutoff */
+    const shape_grid *voxels; /* the grid of a volume that is one grid, seen along the ray itself; else NULL */
     shape_dvec3 low, high; /* the world box around all clouds */
     march_cloud *clouds;
     uint16_t *blue; /* SHAPE_JITTER_BLUE */
@@ -50,8 +54,7 @@ typedef struct march_ray {
 shape_status march_path_find(const shape_marcher *marcher, shape_march_path *path, shape_dvec3 origin,
                              shape_dvec3 direction, bool all, size_t *count, shape_error *error);
 /* Extinction of all clouds at t on that ray. */
-double march_path_extinction(const shape_marcher *marcher, const shape_march_path *path, shape_dvec3 origin,
-                             shape_dvec3 direction, float t);
+double march_path_extinction(const shape_marcher *marcher, const shape_march_path *path, float t);
 void march_path_free(shape_march_path *path);
 
 /* --- march_light.c --- */
@@ -68,6 +71,8 @@ double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *clo
 double march_sun_shaded(double shade, double depth);
 /* The share of the sun's light that comes there by Harris' recurrence. */
 double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo);
+/* Red, green and blue of `seen` at a point of its cloud's frame, as march_grid_value has each. */
+void march_grid_colour(const shape_lightgrid *grid, const float *seen, shape_vec3 p, double rgb[3]);
 /* Value `value` of a grid at a point of its cloud's frame, between cell centres; constant beyond the outermost. */
 double march_grid_value(const shape_lightgrid *grid, const float *cells, int values, int value, shape_vec3 p);
 

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "light/march.h"
+#include "primitive/grid_look.h"
 #include "shape/phase.h"
 
 static const double pi = 3.14159265358979323846;
@@ -86,8 +87,7 @@ static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
     const shape_marcher *m = ray->marcher;
     const march_cloud *cloud = at->cloud;
     if (m->options.light == SHAPE_MARCH_GRID) {
-        for (int c = 0; c < 3; c++)
-            rgb[c] = march_grid_value(&cloud->grid, cloud->seen, 4, c, at->p);
+        march_grid_colour(&cloud->grid, cloud->seen, at->p, rgb);
         return;
     }
     double depth = 0;
@@ -105,8 +105,10 @@ static float find_u2(const march_ray *ray, size_t i, shape_vec3 p, float t)
 {
     const shape_volume_cloud *cloud = ray->marcher->clouds[i].cloud;
     const shape_candidates *found = &ray->scratch->view.views[i];
+    if (cloud->field.model == SHAPE_MODEL_GRID) /* density is 0 where there is nothing */
+        return 0;
     if (ray->marcher->options.lock > 0) /* the point is off the ray */
-        return cloud->field.model == SHAPE_MODEL_GRID ? 0 : shape_cloud_u2(cloud, p);
+        return shape_cloud_u2(cloud, p);
     return found->count ? shape_candidates_u2(found, 0, found->count, cloud->support * cloud->support, t)
                         : INFINITY;
 }
@@ -121,16 +123,20 @@ march_sample march_look(march_ray *ray, float t)
         const shape_volume_cloud *cloud = m->clouds[i].cloud;
         if (!ray->scratch->view.views[i].count)
             continue;
-        shape_ray local = shape_volume_ray(cloud, origin, ray->direction);
+        shape_ray local = m->options.lock > 0 ? shape_volume_ray(cloud, origin, ray->direction)
+                                              : ray->scratch->view.rays[i];
         shape_vec3 p = shape_vec3_add(local.origin, shape_vec3_scale(local.direction, t));
         float u2 = find_u2(ray, i, p, t);
         if (!(u2 <= cloud->support * cloud->support))
             continue;
-        double density = (double)shape_cloud_density_at(cloud, p, u2), rgb[3];
-        lit_point at = {&m->clouds[i], shape_dvec3_add(origin, shape_dvec3_scale(ray->direction, (double)t)),
-                        p, density * (double)cloud->medium.extinction};
+        double density = cloud->field.model == SHAPE_MODEL_GRID
+                             ? (double)grid_look(cloud->list->grid, p.x, p.y, p.z)
+                             : (double)shape_cloud_density_at(cloud, p, u2);
+        double rgb[3];
         if (!(density > 0))
             continue;
+        lit_point at = {&m->clouds[i], shape_dvec3_add(origin, shape_dvec3_scale(ray->direction, (double)t)),
+                        p, density * (double)cloud->medium.extinction};
         if (at.extinction > 0)
             light_point(ray, &at, rgb);
         sample.extinction += at.extinction;

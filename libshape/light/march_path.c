@@ -11,6 +11,7 @@ void march_path_free(shape_march_path *path)
     for (size_t i = 0; i < path->view_count; i++)
         shape_candidates_free(&path->views[i]);
     free(path->views);
+    free(path->rays);
     free(path->edges);
     memset(path, 0, sizeof *path);
 }
@@ -21,8 +22,11 @@ static shape_status prepare(shape_march_path *path, size_t clouds, shape_error *
         return SHAPE_OK;
     march_path_free(path);
     path->views = calloc(clouds + 1, sizeof *path->views);
-    if (!path->views)
+    path->rays = calloc(clouds + 1, sizeof *path->rays);
+    if (!path->views || !path->rays) {
+        march_path_free(path);
         return shape_error_memory(error);
+    }
     path->view_count = clouds;
     return SHAPE_OK;
 }
@@ -58,6 +62,7 @@ shape_status march_path_find(const shape_marcher *marcher, shape_march_path *pat
         const shape_volume_cloud *cloud = &volume->clouds[i];
         shape_ray local = shape_volume_ray(cloud, origin, direction);
         shape_candidates *found = &path->views[i];
+        path->rays[i] = local;
         float t0 = 0, t1 = INFINITY, a, b;
         found->count = 0;
         if (marcher->clouds[i].hidden && !all)
@@ -82,8 +87,7 @@ shape_status march_path_find(const shape_marcher *marcher, shape_march_path *pat
     return status;
 }
 
-double march_path_extinction(const shape_marcher *marcher, const shape_march_path *path, shape_dvec3 origin,
-                             shape_dvec3 direction, float t)
+double march_path_extinction(const shape_marcher *marcher, const shape_march_path *path, float t)
 {
     double sum = 0;
     for (size_t i = 0; i < path->view_count; i++) {
@@ -94,7 +98,7 @@ double march_path_extinction(const shape_marcher *marcher, const shape_march_pat
         float u2 = shape_candidates_u2(found, 0, found->count, cloud->support * cloud->support, t);
         if (!(u2 <= cloud->support * cloud->support))
             continue;
-        shape_ray local = shape_volume_ray(cloud, origin, direction);
+        shape_ray local = path->rays[i];
         shape_vec3 p = shape_vec3_add(local.origin, shape_vec3_scale(local.direction, t));
         sum += (double)(cloud->medium.extinction * shape_cloud_density_at(cloud, p, u2));
     }

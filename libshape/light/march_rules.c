@@ -12,6 +12,8 @@ int march_panel_steps(shape_rule rule)
 
 static void add(march_ray *ray, const march_sample *sample, double depth, double weight)
 {
+    if (!(sample->added[0] > 0 || sample->added[1] > 0 || sample->added[2] > 0))
+        return;
     double factor = weight * exp(-depth);
     for (int c = 0; c < 3; c++)
         ray->rgb[c] += factor * sample->added[c];
@@ -57,7 +59,11 @@ static void exponential(march_ray *ray, float a, float b)
     march_sample f = march_look(ray, a + (b - a) * 0.5f);
     double width = (double)b - (double)a, step = f.extinction * width;
     /* A cloud that only glows has no depth. */
-    add(ray, &f, ray->depth, step > 0 ? -expm1(-step) / f.extinction : width);
+    if (!(step > 0)) {
+        add(ray, &f, ray->depth, width);
+        return;
+    }
+    add(ray, &f, ray->depth, -expm1(-step) / f.extinction);
     ray->depth += step;
 }
 

@@ -11,26 +11,52 @@ bool march_needs_depth(shape_march_light light)
     return light != SHAPE_MARCH_HARRIS && light != SHAPE_MARCH_TWO_PASS && light != SHAPE_MARCH_GRID;
 }
 
-double march_grid_value(const shape_lightgrid *grid, const float *cells, int values, int value, shape_vec3 p)
+/* The eight cell centres about a point of the cloud's frame, and their shares. */
+typedef struct neighbours {
+    size_t cell[8];
+    double share[8];
+} neighbours;
+
+static neighbours find_neighbours(const shape_lightgrid *grid, shape_vec3 p)
 {
     const float *at = &p.x, *low = &grid->box.min.x, *high = &grid->box.max.x;
     size_t first[3], next[3];
-    double share[3], sum = 0;
+    double share[3];
+    neighbours found;
     for (int a = 0; a < 3; a++) {
-        float side = high[a] - low[a];
+        float side = high[a] - low[a], last = (float)grid->size[a] - 1;
         float x = side > 0 ? (at[a] - low[a]) / side * (float)grid->size[a] - 0.5f : 0;
-        x = fminf(fmaxf(x, 0), (float)grid->size[a] - 1);
+        x = x > 0 ? x : 0;
+        x = x < last ? x : last;
         first[a] = (size_t)x;
         next[a] = first[a] + 1 < (size_t)grid->size[a] ? first[a] + 1 : first[a];
         share[a] = (double)(x - (float)first[a]);
     }
     for (int k = 0; k < 8; k++) {
         size_t x = k & 1 ? next[0] : first[0], y = k & 2 ? next[1] : first[1], z = k & 4 ? next[2] : first[2];
-        size_t cell = (z * (size_t)grid->size[1] + y) * (size_t)grid->size[0] + x;
-        sum += (k & 1 ? share[0] : 1 - share[0]) * (k & 2 ? share[1] : 1 - share[1]) *
-               (k & 4 ? share[2] : 1 - share[2]) * (double)cells[cell * (size_t)values + (size_t)value];
+        found.cell[k] = (z * (size_t)grid->size[1] + y) * (size_t)grid->size[0] + x;
+        found.share[k] = (k & 1 ? share[0] : 1 - share[0]) * (k & 2 ? share[1] : 1 - share[1]) *
+                         (k & 4 ? share[2] : 1 - share[2]);
     }
+    return found;
+}
+
+double march_grid_value(const shape_lightgrid *grid, const float *cells, int values, int value, shape_vec3 p)
+{
+    neighbours near = find_neighbours(grid, p);
+    double sum = 0;
+    for (int k = 0; k < 8; k++)
+        sum += near.share[k] * (double)cells[near.cell[k] * (size_t)values + (size_t)value];
     return sum;
+}
+
+void march_grid_colour(const shape_lightgrid *grid, const float *seen, shape_vec3 p, double rgb[3])
+{
+    neighbours near = find_neighbours(grid, p);
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 3; c++)
+            rgb[c] += near.share[k] * (double)seen[4 * near.cell[k] + (size_t)c];
 }
 
 /* Where a ray leaves the box around all clouds; 0 where it misses it. */
@@ -73,16 +99,25 @@ static double cone_depth(const march_ray *ray, shape_dvec3 world)
     return depth;
 }
 
+/* Through the one voxel grid that there is, as far as the sun still shines. */
+static double voxel_depth(const shape_marcher *m, const march_cloud *cloud, shape_vec3 p)
+{
+    double extinction = (double)cloud->cloud->medium.extinction, shade = fmax(m->options.shade, 1e-6);
+    return extinction * grid_way_depth(&cloud->sun, p, (float)m->light_step, m->deep / (extinction * shade));
+}
+
 double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *cloud, shape_vec3 p)
 {
     const shape_marcher *m = ray->marcher;
     double depth = 0;
-    if (shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
+    if (m->options.opaque && shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
         return INFINITY;
     if (cloud && cloud->grid.cells && m->options.shadow == SHAPE_SHADOW_GRID)
         return march_grid_value(&cloud->grid, cloud->grid.cells, SHAPE_LIGHTGRID_VALUES, 0, p);
     if (m->options.shadow == SHAPE_SHADOW_CONE)
         return cone_depth(ray, world);
+    if (cloud && cloud->cloud->field.model == SHAPE_MODEL_GRID && m->volume->cloud_count == 1)
+        return voxel_depth(m, cloud, p);
     if (!ray->status)
         ray->status =
             shape_volume_optical_depth(m->volume, world, m->light.sun, 0, INFINITY, (float)m->light_step,
@@ -104,7 +139,7 @@ double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo)
     shape_march_path *path = &ray->scratch->sun;
     double depth = 0, gain = 1, forward = m->options.forward * albedo;
     size_t count = 0;
-    if (shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
+    if (m->options.opaque && shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
         return 0;
     if (!ray->status)
         ray->status = march_path_find(m, path, world, m->light.sun, true, &count, ray->error);
@@ -115,7 +150,7 @@ double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo)
         double steps = fmax(ceil(fmin(length / m->light_step, 1e6)), 1), width = length / steps;
         for (int k = 0; k < (int)steps; k++) {
             float t = (float)(from + width * (k + 0.5));
-            double eta = m->options.shade * width * march_path_extinction(m, path, world, m->light.sun, t);
+            double eta = m->options.shade * width * march_path_extinction(m, path, t);
             depth += eta;
             if (i || k)
                 gain *= 1 + forward * eta;

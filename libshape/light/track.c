@@ -4,8 +4,7 @@
 
 #include <math.h>
 
-/* Transmittances below this go on by chance only. */
-static const double roulette_below = 0.1;
+#include "light/blocks.h"
 
 typedef struct walker {
     int at[3], step[3];
@@ -102,6 +101,10 @@ static bool collide(const majorant_grid *grid, const double p[3], const double d
                     double depth, shape_random *random, double *t, uint32_t *cloud)
 {
     walker w;
+    if (grid->blocks) {
+        *cloud = 0;
+        return block_collide(grid->blocks, p, d, length, depth, random, t);
+    }
     if (!walker_start(&w, grid, p, d, length))
         return false;
     do {
@@ -150,21 +153,12 @@ static double extinction_at(const majorant_grid *grid, const majorant_cell *cell
     return sum;
 }
 
-/* Low weights live on with a chance in proportion, and then as much heavier. */
-static bool roulette(double *weight, shape_random *random)
-{
-    if (*weight >= roulette_below)
-        return true;
-    if (track_unit(random) * roulette_below >= *weight)
-        return false;
-    *weight = roulette_below;
-    return true;
-}
-
 double track_transmittance(const majorant_grid *grid, const double p[3], const double d[3], double length,
                            shape_random *random)
 {
     walker w;
+    if (grid->blocks)
+        return block_transmittance(grid->blocks, p, d, length, random);
     if (!walker_start(&w, grid, p, d, length))
         return 1;
     double weight = 1, depth = (double)-logf((float)track_unit(random));
@@ -179,12 +173,12 @@ double track_transmittance(const majorant_grid *grid, const double p[3], const d
             w.t += depth / rest;
             double at[3] = {p[0] + d[0] * w.t, p[1] + d[1] * w.t, p[2] + d[2] * w.t};
             weight *= track_max((double)cell->max - extinction_at(grid, cell, at), 0) / rest;
-            if (!roulette(&weight, random))
+            if (!track_roulette(&weight, random))
                 return 0;
             depth = (double)-logf((float)track_unit(random));
         }
         depth -= track_max(exit - w.t, 0) * rest;
-        if (!roulette(&weight, random))
+        if (!track_roulette(&weight, random))
             return 0;
     } while (walker_next(&w, grid));
     return weight;

@@ -26,6 +26,18 @@ static inline double track_max(double a, double b)
     return a > b ? a : b;
 }
 
+/* Low weights live on with a chance in proportion, and then as much heavier. */
+static inline bool track_roulette(double *weight, shape_random *random)
+{
+    const double below = 0.1;
+    if (*weight >= below)
+        return true;
+    if (track_unit(random) * below >= *weight)
+        return false;
+    *weight = below;
+    return true;
+}
+
 /* Draws where a ray from p (metres from the grid's origin) along the unit vector d collides. depth is the optical depth,
  * drawn by the caller as -log of a uniform number, after which the first tentative collision comes. True: p has moved
  * there and *cloud scatters; false: the ray leaves the grid, or comes as far as length [m], and p is where it was. */

@@ -1,9 +1,12 @@
 /* Voxel grids: bricks, samples, ranges (shape/grid.h). */
 #include "shape/grid.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "primitive/grid_look.h"
 
 enum { BRICK = SHAPE_GRID_BRICK, SIDE = SHAPE_GRID_SIDE, POINTS = SHAPE_GRID_BRICK_POINTS };
 
@@ -34,7 +37,7 @@ static shape_status too_large(double bytes, size_t max_bytes, const int points[3
 static shape_status lay_out(shape_grid *grid, const shape_grid_source *source, size_t max_bytes,
                             shape_error *error)
 {
-    const double brick_bytes = POINTS * sizeof(float) + 2 * sizeof(float);
+    const double brick_bytes = POINTS * sizeof(float) + 2 * sizeof(float) + sizeof *grid->filled;
     double cells = 1;
     for (int a = 0; a < 3; a++) {
         if (source->points[a] < 2 || source->points[a] > SHAPE_GRID_MAX_SIDE)
@@ -61,7 +64,8 @@ static shape_status lay_out(shape_grid *grid, const shape_grid_source *source, s
     grid->values = malloc(count * POINTS * sizeof *grid->values);
     grid->low = calloc(count, sizeof *grid->low);
     grid->high = calloc(count, sizeof *grid->high);
-    if (!grid->table || !grid->values || !grid->low || !grid->high)
+    grid->filled = calloc(count, sizeof *grid->filled);
+    if (!grid->table || !grid->values || !grid->low || !grid->high || !grid->filled)
         return shape_error_memory(error);
     memset(grid->values, 0, POINTS * sizeof *grid->values);
     grid->brick_count = 1;
@@ -72,16 +76,37 @@ static shape_status lay_out(shape_grid *grid, const shape_grid_source *source, s
 static bool measure(float *values, float *low, float *high)
 {
     float least = INFINITY, most = 0;
+    int wrong = 0;
+#pragma omp simd reduction(min : least) reduction(max : most) reduction(| : wrong)
     for (int i = 0; i < POINTS; i++) {
-        if (!isfinite(values[i]))
-            return false;
-        values[i] = values[i] > 0 ? values[i] : 0;
-        least = values[i] < least ? values[i] : least;
-        most = values[i] > most ? values[i] : most;
+        float value = values[i];
+        wrong |= !(fabsf(value) <= FLT_MAX);
+        value = value > 0 ? value : 0;
+        values[i] = value;
+        least = value < least ? value : least;
+        most = value > most ? value : most;
     }
     *low = least;
     *high = most;
-    return true;
+    return !wrong;
+}
+
+/* Which parts touch a point that is not 0. A point belongs to one part along an axis, or as their common face to two. */
+static uint64_t find_filled(const float *values)
+{
+    static const unsigned parts[SIDE] = {1, 1, 3, 2, 6, 4, 12, 8, 8};
+    uint64_t filled = 0;
+    for (unsigned z = 0; z < SIDE; z++)
+        for (unsigned y = 0; y < SIDE; y++) {
+            uint64_t row = 0, plane = 0;
+            for (unsigned x = 0; x < SIDE; x++)
+                row |= values[(z * SIDE + y) * SIDE + x] > 0 ? parts[x] : 0;
+            for (unsigned part = 0; part < 4; part++)
+                plane |= parts[y] >> part & 1 ? row << 4 * part : 0;
+            for (unsigned part = 0; part < 4 && plane; part++)
+                filled |= parts[z] >> part & 1 ? plane << 16 * part : 0;
+        }
+    return filled;
 }
 
 static shape_status fill(shape_grid *grid, const shape_grid_source *source, shape_error *error)
@@ -111,6 +136,7 @@ static shape_status fill(shape_grid *grid, const shape_grid_source *source, shap
             }
             even = next;
         }
+        grid->filled[next] = find_filled(values);
         grid->most = most > grid->most ? most : grid->most;
         grid->table[i] = (uint32_t)next;
         grid->brick_count++;
@@ -162,45 +188,15 @@ void shape_grid_release(shape_grid *grid)
     free(grid->values);
     free(grid->low);
     free(grid->high);
+    free(grid->filled);
     free(grid);
 }
 
 /* --- looking --- */
 
-static inline float mix(float a, float b, float t)
-{
-    return a + (b - a) * t;
-}
-
-/* Trilinear from the cell's lowest corner; never beyond the eight values by more than rounding. */
-static inline float in_cell(const float *v, float x, float y, float z)
-{
-    const float *w = v + SIDE * SIDE;
-    float a = mix(mix(v[0], v[1], x), mix(v[SIDE], v[SIDE + 1], x), y);
-    float b = mix(mix(w[0], w[1], x), mix(w[SIDE], w[SIDE + 1], x), y);
-    return mix(a, b, z);
-}
-
-static inline size_t brick_of(const shape_grid *grid, int x, int y, int z)
-{
-    return grid->table[((size_t)(z / BRICK) * (size_t)grid->bricks[1] + (size_t)(y / BRICK)) *
-                           (size_t)grid->bricks[0] +
-                       (size_t)(x / BRICK)];
-}
-
 float shape_grid_sample(const shape_grid *grid, shape_vec3 p)
 {
-    if (!(p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < (float)(grid->points[0] - 1) &&
-          p.y < (float)(grid->points[1] - 1) && p.z < (float)(grid->points[2] - 1)))
-        return 0;
-    unsigned x = (unsigned)p.x, y = (unsigned)p.y, z = (unsigned)p.z;
-    size_t brick =
-        grid->table[((size_t)(z / BRICK) * (size_t)grid->bricks[1] + y / BRICK) * (size_t)grid->bricks[0] +
-                    x / BRICK];
-    if (!brick)
-        return 0;
-    const float *v = grid->values + brick * POINTS + ((z % BRICK) * SIDE + y % BRICK) * SIDE + x % BRICK;
-    return grid->gain * in_cell(v, p.x - (float)x, p.y - (float)y, p.z - (float)z);
+    return grid_look(grid, p.x, p.y, p.z);
 }
 
 /* The range over the points [low, high] of one brick, relative to its first. */
@@ -218,7 +214,7 @@ static void points_range(const float *values, const int low[3], const int high[3
 static void brick_range(const shape_grid *grid, const int at[3], const int from[3], const int to[3],
                         float *least, float *most)
 {
-    size_t brick = brick_of(grid, at[0] * BRICK, at[1] * BRICK, at[2] * BRICK);
+    size_t brick = grid_brick(grid, (unsigned)at[0], (unsigned)at[1], (unsigned)at[2]);
     int low[3], high[3];
     bool whole = true;
     for (int a = 0; a < 3; a++) {

@@ -82,13 +82,16 @@ typedef struct shape_march_options {
     int samples;       /* rays a pixel, 1 to 4096; default 1 */
     double powder;     /* k of the powder laws, 0 to 1000; default 2 */
     double shade; /* multiplies depths to the sun, 0 to 1 (sigma' of Páleník 2016 section 3.3); default 1 */
-    double forward;     /* share of scattering that Harris' light keeps, 0 to 1; default 0.5 */
-    float emission[3];  /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
-    bool silver;        /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
-    double lock;        /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
-    double alpha_power; /* coverage is raised to it, 0.01 to 100 (alpha correction); default 1 */
-    double alpha_peel;  /* pixels with less coverage show no cloud, 0 to 1; default 0 */
-    uint64_t seed;      /* of the jitter */
+    double forward;    /* share of scattering that Harris' light keeps, 0 to 1; default 0.5 */
+    float emission[3]; /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
+    bool silver;       /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
+    double lock;       /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
+    double
+        cutoff; /* a ray ends where less than this share of what is behind gets through, and a way to the sun where
+                           less of the sun does; 1e-12 to 0.1; default 1e-8 */
+    double alpha_power;         /* coverage is raised to it, 0.01 to 100 (alpha correction); default 1 */
+    double alpha_peel;          /* pixels with less coverage show no cloud, 0 to 1; default 0 */
+    uint64_t seed;              /* of the jitter */
     const shape_opaque *opaque; /* finished; default NULL */
     shape_progress progress;    /* default none */
     void *progress_context;
@@ -110,6 +113,7 @@ void shape_marcher_destroy(shape_marcher *marcher); /* NULL is allowed */
 /* Scratch memory of one thread: zero it before first use. */
 typedef struct shape_march_path {
     shape_candidates *views; /* one list a cloud */
+    shape_ray *rays;         /* the ray in each cloud's frame */
     size_t view_count;
     float *edges;
     size_t edge_capacity;
