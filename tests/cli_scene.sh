@@ -98,7 +98,7 @@ note="note: meshes of the scene are"
 "$bin/neph-view" both.json --headless --light-grid 8 --samples 1 -o a.png --save-scene view.json 2>err
 grep -q "neph-view: $note not drawn (neph-render draws them)" err || fail "neph-view says nothing of meshes"
 grep -q '"file": "in/floor.off"' view.json || fail "neph-view --save-scene loses the meshes"
-"$bin/neph-vdb" both.json --resolution 8 -o x.vdb 2>err
+"$bin/neph-vdb" both.json --resolution 16 -o x.vdb 2>err
 grep -q "$note left out" err || fail "neph-vdb says nothing of meshes"
 "$bin/neph-edit" both.json -o x.neph 2>err
 grep -q "$note left out" err || fail "neph-edit says nothing of meshes"
@@ -164,7 +164,7 @@ try ' meshes[0]: "../x.obj" leaves' "$mesh\"../x.obj\"}]}"
 ln -s /etc/passwd link.obj
 try ' meshes[0]: "link.obj" is a link' "$mesh\"link.obj\"}]}"
 try ' meshes[0]: none.obj: cannot open' "$mesh\"none.obj\"}]}"
-try ' meshes[0]: bad.json: not a mesh' "$mesh\"bad.json\"}]}"
+try ' meshes[0]: gauss.neph: not a mesh' "$mesh\"gauss.neph\"}]}"
 printf 'v 0 0 0\nf 1 1 2\n' >bad.obj
 try ' meshes[1]: bad.obj:2:' "$mesh\"wall.obj\"}, {\"file\": \"bad.obj\"}]}"
 try ' clouds[0]: "../x.neph" leaves' '{"scene": 1, "clouds": [{"file": "../x.neph"}]}'
@@ -202,6 +202,16 @@ wrong "give -o FILE" "$bin/neph-edit" gauss.neph --save-scene x.json
 # What a program leaves out of a scene is said.
 "$bin/neph-view" "$source/examples/scenes/lantern.json" --size 8x8 --headless --light-grid 4 --samples 1 -o x.png 2>err
 grep -q "does not show the scene's lamp" err || fail "neph-view says nothing of the lamp"
-"$bin/neph-render" "$source/examples/scenes/lantern.json" --size 8x8 --method march --light single --steps 9 -o x.png 2>err
-grep -q "does not show the scene's lamp" err || fail "neph-render --method march says nothing of the lamp"
+lantern="$source/examples/scenes/lantern.json --size 8x8 --steps 9 --method march"
+for light in "grid --light-resolution 4" "single --shadow grid --light-resolution 4"; do
+    # shellcheck disable=SC2086
+    "$bin/neph-render" $lantern --light $light -o x.png 2>err
+    grep -q "do not show the scene's lamp" err || fail "neph-render --light $light says nothing of the lamp"
+done
+# shellcheck disable=SC2086
+"$bin/neph-render" $lantern --light single -o a.pfm 2>err
+grep -q "lamp" err && fail "--light single says that it leaves the lamp out"
+# shellcheck disable=SC2086
+"$bin/neph-render" -q $lantern --light single --lamp-intensity 0,0,0 -o b.pfm
+cmp -s a.pfm b.pfm && fail "--light single does not show the scene's lamp"
 echo "cli_scene: done"

@@ -44,7 +44,8 @@ static const cli_option render_options[] = {
     {"sun-angle", 0, CLI_NUMBER, &cli_picture_values.sun_angle, 0, 90, "DEGREES",
      "the sun's diameter; 0: a direction [0.53]", &cli_picture_values.sun_angle_given, false},
     {"lamp", 0, CLI_VECTOR, cli_picture_values.lamp, -1e12, 1e12, "X,Y,Z",
-     "a lamp stands there, metres [none]", &cli_picture_values.lamp_given, false},
+     "a lamp stands there, metres; reference, and march with the lights that look along a way [none]",
+     &cli_picture_values.lamp_given, false},
     {"lamp-intensity", 0, CLI_VECTOR, cli_picture_values.lamp_intensity, 0, 1e18, "R,G,B",
      "of the lamp: irradiance times distance squared [10,10,10]", &cli_picture_values.lamp_intensity_given,
      false},
@@ -143,6 +144,15 @@ static bool show_progress(void *context, double done)
     return true;
 }
 
+static shape_lamp make_lamp(void)
+{
+    const cli_picture *v = &cli_picture_values;
+    shape_lamp lamp = {shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]), {0, 0, 0}};
+    for (int c = 0; c < 3 && v->lamp_given; c++)
+        lamp.intensity[c] = (float)v->lamp_intensity[c];
+    return lamp;
+}
+
 static shape_pathtrace_options pathtrace_options(const cli_common *common)
 {
     shape_pathtrace_options options = shape_pathtrace_defaults();
@@ -155,9 +165,7 @@ static shape_pathtrace_options pathtrace_options(const cli_common *common)
         options.noise = noise;
         options.samples = samples_given ? (int)samples : 1 << 16;
     }
-    options.lamp.position = shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]);
-    for (int c = 0; c < 3 && v->lamp_given; c++)
-        options.lamp.intensity[c] = (float)v->lamp_intensity[c];
+    options.lamp = make_lamp();
     options.progress = show_progress;
     return options;
 }
@@ -258,6 +266,8 @@ static picture_outcome march(const cli_common *common, const picture *p)
     options.samples = samples_given ? (int)samples : 1;
     options.seed = common->seed;
     options.opaque = p->opaque;
+    if (render_march_takes_lamp())
+        options.lamp = make_lamp();
     options.progress = show_progress;
     cli_check(shape_marcher_create(p->volume, &p->light, p->view.eye, &options, &marcher, &error), &error);
     cli_check(shape_march_render(marcher, &p->view, p->image->pixels, NULL, &error), &error);
@@ -291,9 +301,14 @@ static void check_method(void)
         cli_wrong("--denoise belongs to --method reference");
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
-    if (method != REFERENCE &&
-        (noise_given || cli_picture_values.lamp_given || bounces_given || cli_picture_values.sun_angle_given))
-        cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
+    if (method != REFERENCE && (noise_given || bounces_given || cli_picture_values.sun_angle_given))
+        cli_wrong("--noise, --error, --max-bounces and --sun-angle belong to --method reference");
+    if (method >= PAPER && (cli_picture_values.lamp_given || cli_picture_values.lamp_intensity_given))
+        cli_wrong("--lamp: the methods of 2018 know the sun alone (choose reference or march)");
+    if (method == MARCH && cli_picture_values.lamp_given && !render_march_takes_lamp())
+        cli_wrong(
+            "--lamp: light grids, two-pass and --shadow grid are made for the sun alone (choose --light "
+            "octaves or another that looks along a way)");
     if (method != REFERENCE && samples_given && samples > 4096)
         cli_wrong("--spp %d: --method %s takes at most 4096", (int)samples, method_names[method]);
     if (method >= PAPER && render_opaque_given())
@@ -319,9 +334,12 @@ static void use_scene(const cli_input *input)
     if (!input->scene)
         return;
     cli_picture_use_scene(input->scene);
-    if (method != REFERENCE && input->scene->lamp_given)
-        cli_say("note: --method %s does not show the scene's lamp (--method reference does)",
+    if (method >= PAPER && input->scene->lamp_given)
+        cli_say("note: --method %s does not show the scene's lamp (reference and march do)",
                 method_names[method]);
+    if (method == MARCH && input->scene->lamp_given && !render_march_takes_lamp())
+        cli_say("note: light grids, two-pass and --shadow grid do not show the scene's lamp (--light octaves "
+                "and --method reference do)");
     if (method != REFERENCE && input->scene->sun_angle_given && input->scene->sun_angle > 0)
         cli_say("note: --method %s takes the sun as a direction, not a disc (--method reference has it)",
                 method_names[method]);

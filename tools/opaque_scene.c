@@ -37,8 +37,7 @@ void opaque_scene_add(shape_opaque *opaque, const shape_scene *scene, const char
         cli_set_place("%.400s: meshes[%zu]: ", shown, i);
         char *file = cli_scene_file(path, scene->meshes[i].file);
         shape_mesh *read = mesh_file_read(file, false, &format);
-        if (read->triangle_count >
-            SHAPE_SCENE_TRIANGLES_MAX - (shape_opaque_triangle_count(opaque) - before))
+        if (read->triangle_count > SHAPE_SCENE_TRIANGLES_MAX - (shape_opaque_triangle_count(opaque) - before))
             cli_fail("more than %d triangles in the scene's meshes (decimate them)",
                      SHAPE_SCENE_TRIANGLES_MAX);
         add(opaque, &scene->meshes[i], read, format, file);

@@ -82,9 +82,10 @@ shape_status scene_read_options(scene_reader *r, const json_t *object, void *to)
 
 /* --- places --- */
 
-static const scene_member place_members[] = {{"translate", scene_place_translate, 0},   {"rotate", scene_place_rotate, 0},
-                                             {"scale", scene_place_scale, 0},           {"mirror", scene_place_mirror, 0},
-                                             {"keep-depth", scene_place_keep_depth, 0}, {0}};
+static const scene_member place_members[] = {
+    {"translate", scene_place_translate, 0},   {"rotate", scene_place_rotate, 0},
+    {"scale", scene_place_scale, 0},           {"mirror", scene_place_mirror, 0},
+    {"keep-depth", scene_place_keep_depth, 0}, {0}};
 
 /* --- clouds --- */
 

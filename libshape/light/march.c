@@ -49,6 +49,9 @@ static const char *find_wrong_choice(const shape_march_options *o)
         return "end: there is none of that number";
     if (o->silver && (o->light == SHAPE_MARCH_GRID || o->light == SHAPE_MARCH_OCTAVES))
         return "silver: the lights grid and octaves have a phase function of their own";
+    if (shape_lamp_shines(&o->lamp) && !shape_march_takes_lamp(o->light, o->shadow))
+        return "lamp: light and shadow grids and two passes know the sun alone (choose another light or "
+               "shadow)";
     return NULL;
 }
 
@@ -89,7 +92,13 @@ shape_status shape_march_check(const shape_march_options *options, shape_error *
     const char *wrong = find_wrong_choice(options);
     if (!wrong)
         wrong = find_wrong_number(options);
-    return wrong ? shape_error_set(error, SHAPE_ERROR_ARGUMENT, "march %s", wrong) : SHAPE_OK;
+    return wrong ? shape_error_set(error, SHAPE_ERROR_ARGUMENT, "march %s", wrong)
+                 : shape_lamp_check(&options->lamp, error);
+}
+
+bool shape_march_takes_lamp(shape_march_light light, shape_march_shadow shadow)
+{
+    return light == SHAPE_MARCH_HARRIS || (march_needs_depth(light) && shadow != SHAPE_SHADOW_GRID);
 }
 
 /* --- a marcher --- */
@@ -184,6 +193,9 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
     m->light = *light;
     m->sky = shape_sky_make(light);
     m->options = *options;
+    for (int c = 0; c < 3; c++)
+        m->has_sun = m->has_sun || light->sun_irradiance[c] > 0;
+    m->has_lamp = shape_lamp_shines(&options->lamp);
     find_box(m);
     choose_steps(m);
     shape_sky_mean(&m->sky, m->upper, m->lower);
@@ -319,8 +331,13 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
                                   double start, shape_march_scratch *scratch, double rgb[3],
                                   shape_error *error)
 {
-    march_ray ray = {marcher,  origin, direction, scratch, 1 - start,
-                     SHAPE_OK, error,  {0, 0, 0}, 0,       {0, 0, 0}};
+    march_ray ray = {.marcher = marcher,
+                     .origin = origin,
+                     .direction = direction,
+                     .scratch = scratch,
+                     .first = 1 - start,
+                     .status = SHAPE_OK,
+                     .error = error};
     size_t count;
     shape_opaque_hit hit;
     shape_status status = march_path_find(marcher, &scratch->view, origin, direction, &count, error);

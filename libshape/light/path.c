@@ -26,8 +26,8 @@ path_scene path_scene_make(const majorant_grid *grid, const shape_light *light,
         s.irradiance[c] = (double)light->sun_irradiance[c];
         s.intensity[c] = (double)options->lamp.intensity[c];
         s.has_sun = s.has_sun || s.irradiance[c] > 0;
-        s.has_lamp = s.has_lamp || s.intensity[c] > 0;
     }
+    s.has_lamp = shape_lamp_shines(&options->lamp);
     s.max_bounces = options->max_bounces;
     s.opaque = options->opaque;
     return s;

@@ -42,7 +42,7 @@ typedef enum shape_march_end {
                        cloud, as an image negative, where steps are long */
 } shape_march_end;
 
-/* How a point is lit; depth is the optical depth to the sun. */
+/* How a point is lit; depth is the optical depth to the sun, or to the lamp for what the lamp gives. */
 typedef enum shape_march_light {
     SHAPE_MARCH_SINGLE,       /* the sun once scattered: Beer's law, exp(-depth). The sky lights nothing */
     SHAPE_MARCH_POWDER,       /* the same times 1 - exp(-k depth) (Páleník 2016 Eq. 3.14): dark rims */
@@ -56,7 +56,7 @@ typedef enum shape_march_light {
     SHAPE_MARCH_GRID /* all scatterings of sun and sky, from the light pass (shape/lightgrid.h); the default */
 } shape_march_light;
 
-/* How the optical depth to the sun is found, where the light asks for it. */
+/* How the optical depth to the sun and the lamp is found, where the light asks for it. */
 typedef enum shape_march_shadow {
     SHAPE_SHADOW_MARCH, /* steps straight to the sun; the default */
     SHAPE_SHADOW_CONE, /* steps that go astray by 5, 10, 15, 20 degrees in turn (Páleník 2016 section 5.1): soft */
@@ -87,6 +87,9 @@ typedef struct shape_march_options {
     double alpha_power; /* coverage is raised to it, 0.01 to 100 (alpha correction); default 1 */
     double alpha_peel;  /* pixels with less coverage show no cloud, 0 to 1; default 0 */
     uint64_t seed;      /* of the jitter */
+    shape_lamp
+        lamp; /* default none; takes a light of a depth or Harris', and no SHAPE_SHADOW_GRID: the grids are the
+                        sun's */
     const shape_opaque *opaque; /* finished; default NULL */
     shape_progress progress;    /* default none */
     void *progress_context;
@@ -94,6 +97,9 @@ typedef struct shape_march_options {
 
 shape_march_options shape_march_defaults(void);
 shape_status shape_march_check(const shape_march_options *options, shape_error *error);
+
+/* Whether such a light and shadow can show a lamp. */
+bool shape_march_takes_lamp(shape_march_light light, shape_march_shadow shadow);
 
 /* A volume lit and ready to be marched. Opaque; reading it is thread-safe. */
 typedef struct shape_marcher shape_marcher;

@@ -44,6 +44,11 @@ typedef struct shape_lamp {
     float intensity[3];   /* 0 each: no lamp */
 } shape_lamp;
 
+/* Whether it shines at all. */
+bool shape_lamp_shines(const shape_lamp *lamp);
+/* SHAPE_ERROR_ARGUMENT where a number is negative or not finite. */
+shape_status shape_lamp_check(const shape_lamp *lamp, shape_error *error);
+
 typedef struct shape_pathtrace_options {
     int samples; /* paths a pixel, 1 to 2^20; default 64. With `noise`: the most */
     double

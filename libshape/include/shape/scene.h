@@ -19,8 +19,8 @@ enum {
     SHAPE_SCENE_TEXT_MAX = 4096,     /* bytes of a text */
     SHAPE_SCENE_CLOUDS_MAX = 100000, /* clouds, all copies counted, that programs place */
     SHAPE_SCENE_PRIMITIVES_MAX =
-        10000000, /* primitives that programs hold for one scene; copies share theirs */
-    SHAPE_SCENE_MESHES_MAX = 1000,        /* meshes */
+        10000000,                  /* primitives that programs hold for one scene; copies share theirs */
+    SHAPE_SCENE_MESHES_MAX = 1000, /* meshes */
     SHAPE_SCENE_TRIANGLES_MAX = 10000000, /* triangles of all meshes that programs hold for one scene */
 };
 
