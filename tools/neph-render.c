@@ -70,6 +70,7 @@ static const cli_option compare_options[] = {
 
 static const cli_group groups[] = {{"Picture", cli_picture_options},
                                    {"Volumes (.vdb, raw)", cli_volume_options},
+                                   {"Colour of volumes (.vdb)", cli_volume_colour_options},
                                    {"Medium and place of volumes", cli_optics_options},
                                    {"Rendering", render_options},
                                    {"Opaque things", render_opaque_options},
@@ -89,6 +90,7 @@ static const cli_program program = {
                 "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
                 "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
                 "  neph-render smoke.vdb -o smoke.png --density-gain 3 --extinction 0.5\n"
+                "  neph-render smoke.vdb -o smoke.png --grid density --colour-grid Cd\n"
                 "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
     .min_arguments = 1,
     .max_arguments = 2,
@@ -301,6 +303,8 @@ static void check_method(void)
         cli_wrong("--denoise belongs to --method reference");
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
+    if (method == MARCH) /* before the input is read: whether that brings meshes is asked afterwards */
+        render_march_check(true);
     if (method != REFERENCE && (noise_given || bounces_given || cli_picture_values.sun_angle_given))
         cli_wrong("--noise, --error, --max-bounces and --sun-angle belong to --method reference");
     if (method >= PAPER && (cli_picture_values.lamp_given || cli_picture_values.lamp_intensity_given))

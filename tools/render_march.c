@@ -117,7 +117,9 @@ void render_march_check(bool has_things)
     if (v->pixels_given && v->stepping != SHAPE_STEP_EXPONENTIAL)
         cli_wrong("--step-pixels goes with --step exponential");
     if (v->end_given && !has_things)
-        cli_wrong("--step-end has no meaning without --mesh");
+        cli_wrong("--step-end has no meaning without --mesh or a scene with meshes");
+    if (v->light == SHAPE_MARCH_HARRIS && cli_given("colour-grid"))
+        cli_wrong("--colour-grid: --light harris has no colours (choose another)");
     check_light(has_things);
 }
 

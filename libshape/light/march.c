@@ -131,9 +131,11 @@ static void choose_steps(shape_marcher *m)
 }
 
 /* The grid that the options' light looks up, if any. */
-static shape_status build_grid(shape_marcher *m, size_t i, shape_lightgrid *grid, shape_error *error)
+static shape_status build_grid(shape_marcher *m, size_t i, int channel, shape_lightgrid *grid,
+                               shape_error *error)
 {
     shape_lightgrid_options options = shape_lightgrid_defaults();
+    options.channel = channel;
     options.resolution = m->options.resolution;
     options.opaque = m->options.opaque;
     if (m->options.light == SHAPE_MARCH_GRID)
@@ -148,13 +150,41 @@ static shape_status build_grid(shape_marcher *m, size_t i, shape_lightgrid *grid
     return shape_lightgrid_build(m->volume, i, &m->light, &options, grid, error);
 }
 
+/* A coloured cloud's light is solved once a channel, and each is taken from its own solution. */
+static shape_status light_channels(shape_marcher *m, size_t i, shape_dvec3 eye, shape_error *error)
+{
+    march_cloud *cloud = &m->clouds[i];
+    size_t cells = 0;
+    for (int c = 0; c < 3; c++) {
+        shape_lightgrid_free(&cloud->grid);
+        shape_status status = build_grid(m, i, c, &cloud->grid, error);
+        const int *n = cloud->grid.size;
+        if (status)
+            return status;
+        cells = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+        float *seen = calloc(cells, 4 * sizeof *seen);
+        if (!seen)
+            return shape_error_memory(error);
+        shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, m->upper, m->lower, eye, seen);
+        if (!cloud->seen)
+            cloud->seen = seen;
+        for (size_t k = 0; k < cells; k++)
+            cloud->seen[4 * k + (size_t)c] = seen[4 * k + (size_t)c];
+        if (cloud->seen != seen)
+            free(seen);
+    }
+    return SHAPE_OK;
+}
+
 static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, shape_error *error)
 {
     march_cloud *cloud = &m->clouds[i];
     cloud->cloud = &m->volume->clouds[i];
     if (shape_box_is_empty(cloud->cloud->box))
         return SHAPE_OK;
-    shape_status status = build_grid(m, i, &cloud->grid, error);
+    if (m->options.light == SHAPE_MARCH_GRID && shape_cloud_is_coloured(cloud->cloud))
+        return light_channels(m, i, eye, error);
+    shape_status status = build_grid(m, i, -1, &cloud->grid, error);
     if (status || m->options.light != SHAPE_MARCH_GRID)
         return status;
     const int *n = cloud->grid.size;
@@ -200,6 +230,12 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
     choose_steps(m);
     shape_sky_mean(&m->sky, m->upper, m->lower);
     status = make_blue(m, error);
+    for (size_t i = 0; i < volume->cloud_count && !status; i++)
+        if (options->light == SHAPE_MARCH_HARRIS && shape_cloud_is_coloured(&volume->clouds[i]))
+            status =
+                shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                                "march light: Harris' recurrence has no colours (choose another light, or "
+                                "leave the grid's colour out)");
     for (size_t i = 0; i < volume->cloud_count && !status; i++)
         status = light_cloud(m, i, eye, error);
     if (status) {

@@ -60,25 +60,25 @@ static double phase(const shape_marcher *m, const lit_point *at, double cosine)
     return (double)shape_phase_hg((float)fmin(exp(-at->extinction * m->step), highest), (float)cosine);
 }
 
-/* Radiance that the cloud's scattering adds at a point, for extinction 1 and a light of irradiance 1 there. */
+/* Radiance that the cloud's scattering adds at a point, for extinction 1, albedo 1 and a light of irradiance 1 there. */
 static double scattered(march_ray *ray, const lit_point *at, const march_way *way, double *depth)
 {
     const shape_marcher *m = ray->marcher;
     const shape_medium *medium = &at->cloud->cloud->medium;
-    double albedo = (double)medium->albedo, cosine = shape_dvec3_dot(ray->direction, way->direction);
+    double cosine = shape_dvec3_dot(ray->direction, way->direction);
     if (m->options.light == SHAPE_MARCH_HARRIS)
-        return albedo * phase(m, at, cosine) * march_harris(ray, at->world, way, albedo);
+        return phase(m, at, cosine) * march_harris(ray, at->world, way, (double)medium->albedo);
     if (m->options.light == SHAPE_MARCH_TWO_PASS) {
         const shape_lightgrid *grid = &at->cloud->grid;
         double received = march_grid_value(grid, grid->cells, SHAPE_LIGHTGRID_VALUES, 0, at->p);
         if (shape_opaque_blocks(m->options.opaque, at->world, way->direction, way->length))
             received = 0;
-        return albedo * received * (1 + phase(m, at, cosine)) / pi;
+        return received * (1 + phase(m, at, cosine)) / pi;
     }
     *depth = march_shaded(m->options.shade, march_depth(ray, at->world, way, at->cloud, at->p));
     if (m->options.light == SHAPE_MARCH_OCTAVES)
-        return albedo * octaves(medium, (float)cosine, *depth);
-    return albedo * phase(m, at, cosine) * attenuation(&m->options, cosine, *depth);
+        return octaves(medium, (float)cosine, *depth);
+    return phase(m, at, cosine) * attenuation(&m->options, cosine, *depth);
 }
 
 static void add_lamp(march_ray *ray, const lit_point *at, double rgb[3])
@@ -93,14 +93,24 @@ static void add_lamp(march_ray *ray, const lit_point *at, double rgb[3])
         rgb[c] += value * (double)lamp->intensity[c];
 }
 
+/* The eye's own grid has the albedo in it, but for clouds of several colours. */
+static void look_up(const lit_point *at, const float albedo[3], double rgb[3])
+{
+    const march_cloud *cloud = at->cloud;
+    bool coloured = shape_cloud_is_coloured(cloud->cloud);
+    for (int c = 0; c < 3; c++)
+        rgb[c] =
+            march_grid_value(&cloud->grid, cloud->seen, 4, c, at->p) * (coloured ? (double)albedo[c] : 1);
+}
+
 static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
 {
     const shape_marcher *m = ray->marcher;
-    const march_cloud *cloud = at->cloud;
     bool sky = m->options.light == SHAPE_MARCH_OCTAVES;
+    float albedo[3];
+    shape_cloud_albedo(at->cloud->cloud, at->p, albedo);
     if (m->options.light == SHAPE_MARCH_GRID) {
-        for (int c = 0; c < 3; c++)
-            rgb[c] = march_grid_value(&cloud->grid, cloud->seen, 4, c, at->p);
+        look_up(at, albedo, rgb);
         return;
     }
     double depth = 0, value = 0;
@@ -110,10 +120,11 @@ static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
     for (int c = 0; c < 3; c++)
         rgb[c] = value * (double)m->light.sun_irradiance[c];
     for (int c = 0; c < 3 && sky; c++)
-        rgb[c] += (double)cloud->cloud->medium.albedo * exp(-fmin(depth, 1e3) / 8) *
-                  (double)(m->upper[c] + m->lower[c]) / 2;
+        rgb[c] += exp(-fmin(depth, 1e3) / 8) * (double)(m->upper[c] + m->lower[c]) / 2;
     if (m->has_lamp)
         add_lamp(ray, at, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= (double)albedo[c];
 }
 
 /* The square of u at a point of cloud i; above the support's where there is nothing. */

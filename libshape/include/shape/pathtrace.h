@@ -30,8 +30,10 @@ double shape_tracer_transmittance(const shape_tracer *tracer, shape_dvec3 origin
 /* A path that was followed until it left the volume. */
 typedef struct shape_walk {
     shape_dvec3 direction; /* in which it left; the starting one where nothing was met */
-    double weight;         /* the product of the albedos met; 0 where max_bounces was passed */
-    int bounces;           /* collisions met */
+    double
+        weight;  /* the product of the media's albedos met, a grid's colour left out; 0 where max_bounces was
+                              passed */
+    int bounces; /* collisions met */
 } shape_walk;
 
 /* Follows one path from origin along direction (a unit vector). */
