@@ -48,6 +48,29 @@ done
 "$bin/neph-render" --compare z.pfm y.pfm --tolerance 1e-4 >/dev/null || fail "--up y is another picture than --up z"
 "$bin/neph-render" --compare z.pfm side.pfm --tolerance 0.01 >/dev/null 2>&1 && fail "--up changes nothing"
 
+# Colour from a second grid: the mean light of the voxels, which neph-vdb writes, as three channels. Bluish shadows (the sky's
+# light) and black where none came make another picture by either method, and nothing becomes brighter by it.
+"$bin/neph-vdb" -q axes.neph --resolution 24 --grids light -o lit.vdb
+for method in "march --light single --steps 20" "march --steps 20 --light-resolution 8" "reference --spp 4 --max-bounces 1"; do
+    for colour in "" "--colour-grid light"; do
+        # shellcheck disable=SC2086
+        "$bin/neph-render" -q lit.vdb --size 24x16 --sky none --method $method $colour --grid density -o "colour$colour.pfm" \
+            --stats >"colour$colour.json" || fail "--method $method $colour failed"
+    done
+    python3 -c '
+import json
+grey, coloured = (json.load(open(name))["mean"] for name in ("colour.json", "colour--colour-grid light.json"))
+assert all(0 < c < 0.9 * g for c, g in zip(coloured, grey)), (grey, coloured)
+assert coloured[0] != coloured[2]' || fail "--method $method: --colour-grid does not colour the cloud"
+done
+"$bin/neph-render" lit.vdb --size 8x8 --method march --steps 9 --light single --colour-grid light -o x.pfm 2>err
+grep -q 'grid "density", coloured by light' err || fail "nothing says where the colour is from: $(cat err)"
+rm x.pfm
+refused 1 'no grid of vectors called "nope"' "$bin/neph-render" lit.vdb $small --colour-grid nope -o no.png
+refused 1 "2 colour grids" "$bin/neph-render" lit.vdb $small --colour-grid light,light -o no.png
+refused 2 "harris has no colours" "$bin/neph-render" lit.vdb --size 8x8 --method march --light harris --colour-grid light -o no.png
+refused 2 "colour-grid belongs to volumes" "$bin/neph-render" axes.neph --colour-grid light -o no.png
+
 # A raw volume of 2 x 1 x 1 floats, 1 and 0.5.
 printf '\002\000\000\000\001\000\000\000\001\000\000\000\000\000\200\077\000\000\000\077' >two.raw
 "$bin/neph-render" -q two.raw $small -o raw.pfm || fail "a raw volume was not rendered"
@@ -56,6 +79,7 @@ cmp -s raw.pfm pipe.pfm || fail "a pipe makes another picture than a file"
 head -c 19 two.raw >short.raw
 refused 1 "20, not 19\|has 20 bytes" "$bin/neph-render" short.raw $small -o no.png
 
+refused 1 "no grid for --colour-grid" "$bin/neph-render" two.raw $small --colour-grid light -o no.png
 refused 1 "choose one with --grid" "$bin/neph-render" "$vdb/several.vdb" $small -o no.png
 refused 1 "no scalar grid" "$bin/neph-render" "$vdb/vector.vdb" $small -o no.png
 refused 1 "empty" "$bin/neph-render" "$vdb/empty.vdb" $small -o no.png

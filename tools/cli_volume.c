@@ -33,6 +33,12 @@ const cli_option cli_volume_options[] = {
      "memory that the volume may take, bytes [4294967296]", GIVEN(max_memory)},
     {0}};
 
+const cli_option cli_volume_colour_options[] = {
+    {"colour-grid", 0, CLI_TEXT, VALUE(colour_grid), 0, 0, "NAME|R,G,B",
+     "the albedo is multiplied by this grid of a .vdb, three channels, or by three grids of one [none]",
+     GIVEN(colour_grid)},
+    {0}};
+
 /* The first bytes and how many there are; none of what can be read once only, a pipe. */
 static size_t read_start(const char *path, unsigned char *bytes, size_t room, size_t *whole)
 {
@@ -85,6 +91,8 @@ static shape_grid *decode_raw(const char *shown, const void *bytes, size_t size,
     shape_grid *grid;
     if (cli_volume_values.grid_given)
         cli_fail("%s: a raw volume has no grids to choose from with --grid", shown);
+    if (cli_volume_values.colour_grid_given)
+        cli_fail("%s: a raw volume has no grid for --colour-grid (give a .vdb)", shown);
     cli_check(
         shape_volume_raw_decode(shown, bytes, size, (size_t)cli_volume_values.max_memory, &grid, &error),
         &error);
@@ -102,6 +110,7 @@ static shape_grid *read_vdb(const char *path, const char *shown, shape_frame *fr
     if (cli_volume_values.voxel_size_given)
         cli_fail("%s: an OpenVDB file has a voxel size of its own (leave --voxel-size out)", shown);
     options.grid = cli_volume_values.grid;
+    options.colour = cli_volume_values.colour_grid;
     options.max_bytes = (size_t)cli_volume_values.max_memory;
     options.y_up = cli_volume_values.up == UP_Y;
     options.shown = shown;
@@ -110,9 +119,11 @@ static shape_grid *read_vdb(const char *path, const char *shown, shape_frame *fr
         unlink(path); /* a copy of ours */
     cli_check(status, &error);
     *frame = contents.frame;
-    cli_say("%s: grid \"%s\"%s, %d x %d x %d voxels, the densest %g", shown, contents.name,
-            contents.level_set ? " (a level set, filled)" : "", contents.grid->points[0] - 2,
-            contents.grid->points[1] - 2, contents.grid->points[2] - 2, (double)contents.grid->most);
+    const char *colour = cli_volume_values.colour_grid;
+    cli_say("%s: grid \"%s\"%s%s%s, %d x %d x %d voxels, the densest %g", shown, contents.name,
+            contents.level_set ? " (a level set, filled)" : "", colour ? ", coloured by " : "",
+            colour ? colour : "", contents.grid->points[0] - 2, contents.grid->points[1] - 2,
+            contents.grid->points[2] - 2, (double)contents.grid->most);
     return contents.grid;
 }
 
@@ -206,6 +217,7 @@ cli_input cli_volume_input_read(const char *path)
 void cli_refuse_volume_options(void)
 {
     const char *name = cli_given_of(cli_volume_options);
+    name = name ? name : cli_given_of(cli_volume_colour_options);
     name = name ? name : cli_given_of(cli_optics_options);
     if (name)
         cli_wrong("--%s belongs to volumes, .vdb or raw (for a .neph use neph-edit)", name);

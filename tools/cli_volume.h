@@ -6,15 +6,17 @@
 
 typedef struct cli_volume {
     double density_gain, voxel_size, max_memory;
-    const char *grid;
+    const char *grid, *colour_grid;
     int up;
-    bool density_gain_given, voxel_size_given, max_memory_given, grid_given, up_given;
+    bool density_gain_given, voxel_size_given, max_memory_given, grid_given, up_given, colour_grid_given;
 } cli_volume;
 
 extern cli_volume cli_volume_values;
 /* The rows that fill cli_volume_values, and the medium's of cli_medium_values; groups "Volumes (.vdb, raw)", "Medium of
  * volumes". */
 extern const cli_option cli_volume_options[];
+/* --colour-grid, for programs that show it. */
+extern const cli_option cli_volume_colour_options[];
 
 /* Whether a file is a volume: by its suffix (.vdb, .raw), else by what it begins with. Not for "-". */
 bool cli_is_volume(const char *path);

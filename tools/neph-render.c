@@ -49,7 +49,8 @@ static const cli_option render_options[] = {
     {"sun-angle", 0, CLI_NUMBER, &cli_picture_values.sun_angle, 0, 90, "DEGREES",
      "the sun's diameter; 0: a direction [0.53]", &cli_picture_values.sun_angle_given, false},
     {"lamp", 0, CLI_VECTOR, cli_picture_values.lamp, -1e12, 1e12, "X,Y,Z",
-     "a lamp stands there, metres [none]", &cli_picture_values.lamp_given, false},
+     "a lamp stands there, metres; reference, and march with the lights that look along a way [none]",
+     &cli_picture_values.lamp_given, false},
     {"lamp-intensity", 0, CLI_VECTOR, cli_picture_values.lamp_intensity, 0, 1e18, "R,G,B",
      "of the lamp: irradiance times distance squared [10,10,10]", &cli_picture_values.lamp_intensity_given,
      false},
@@ -74,6 +75,7 @@ static const cli_option compare_options[] = {
 
 static const cli_group groups[] = {{"Picture", cli_picture_options},
                                    {"Volumes (.vdb, raw)", cli_volume_options},
+                                   {"Colour of volumes (.vdb)", cli_volume_colour_options},
                                    {"Medium and place of volumes", cli_optics_options},
                                    {"Rendering", render_options},
                                    {"Opaque things", render_opaque_options},
@@ -94,6 +96,7 @@ static const cli_program program = {
                 "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
                 "  neph-render cloud.neph -o cloud.png --method march --error 0.05\n"
                 "  neph-render smoke.vdb -o smoke.png --density-gain 3 --extinction 0.5\n"
+                "  neph-render smoke.vdb -o smoke.png --grid density --colour-grid Cd\n"
                 "  neph-render --compare a.exr b.exr --tolerance 1e-3\n",
     .min_arguments = 1,
     .max_arguments = 2,
@@ -149,6 +152,15 @@ static bool show_progress(void *context, double done)
     return true;
 }
 
+static shape_lamp make_lamp(void)
+{
+    const cli_picture *v = &cli_picture_values;
+    shape_lamp lamp = {shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]), {0, 0, 0}};
+    for (int c = 0; c < 3 && v->lamp_given; c++)
+        lamp.intensity[c] = (float)v->lamp_intensity[c];
+    return lamp;
+}
+
 static shape_pathtrace_options pathtrace_options(const cli_common *common)
 {
     shape_pathtrace_options options = shape_pathtrace_defaults();
@@ -161,9 +173,7 @@ static shape_pathtrace_options pathtrace_options(const cli_common *common)
         options.noise = noise_given ? noise : allowed;
         options.samples = samples_given ? (int)samples : 1 << 16;
     }
-    options.lamp.position = shape_dvec3_make(v->lamp[0], v->lamp[1], v->lamp[2]);
-    for (int c = 0; c < 3 && v->lamp_given; c++)
-        options.lamp.intensity[c] = (float)v->lamp_intensity[c];
+    options.lamp = make_lamp();
     options.progress = show_progress;
     return options;
 }
@@ -279,6 +289,8 @@ static picture_outcome march(const cli_common *common, const picture *p)
     options.samples = samples_given ? (int)samples : 1;
     options.seed = common->seed;
     options.opaque = p->opaque;
+    if (render_march_takes_lamp())
+        options.lamp = make_lamp();
     options.progress = show_progress;
     shape_budget_choice choice = {0};
     if (error_given)
@@ -334,25 +346,22 @@ static void check_method(void)
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
     check_error();
-    if (method == MARCH)
-        render_march_check(render_opaque_given());
-    if (method != REFERENCE &&
-        (noise_given || cli_picture_values.lamp_given || bounces_given || cli_picture_values.sun_angle_given))
-        cli_wrong("--noise, --lamp, --max-bounces and --sun-angle belong to --method reference");
+    if (method == MARCH) /* before the input is read: whether that brings meshes is asked afterwards */
+        render_march_check(true);
+    if (method != REFERENCE && (noise_given || bounces_given || cli_picture_values.sun_angle_given))
+        cli_wrong("--noise, --max-bounces and --sun-angle belong to --method reference");
+    if (method >= PAPER && (cli_picture_values.lamp_given || cli_picture_values.lamp_intensity_given))
+        cli_wrong("--lamp: the methods of 2018 know the sun alone (choose reference or march)");
+    if (method == MARCH && cli_picture_values.lamp_given && !render_march_takes_lamp())
+        cli_wrong(
+            "--lamp: light grids, two-pass and --shadow grid are made for the sun alone (choose --light "
+            "octaves or another that looks along a way)");
     if (method != REFERENCE && samples_given && samples > 4096)
         cli_wrong("--spp %d: --method %s takes at most 4096", (int)samples, method_names[method]);
     if (method >= PAPER && render_opaque_given())
         cli_wrong("--mesh: the methods of 2018 have no opaque things (choose reference or march)");
     if (method < PAPER && paper_lod)
         cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
-}
-
-/* What a scene would have to hold, and cannot. */
-static void check_save(const cli_common *common)
-{
-    cli_save_check(common);
-    if (cli_save_wanted() && render_opaque_given())
-        cli_wrong("--save-scene --mesh: a scene holds no meshes (leave one of them out)");
 }
 
 static void check_command(const cli_common *common)
@@ -372,12 +381,17 @@ static void use_scene(const cli_input *input)
     if (!input->scene)
         return;
     cli_picture_use_scene(input->scene);
-    if (method != REFERENCE && input->scene->lamp_given)
-        cli_say("note: --method %s does not show the scene's lamp (--method reference does)",
+    if (method >= PAPER && input->scene->lamp_given)
+        cli_say("note: --method %s does not show the scene's lamp (reference and march do)",
                 method_names[method]);
+    if (method == MARCH && input->scene->lamp_given && !render_march_takes_lamp())
+        cli_say("note: light grids, two-pass and --shadow grid do not show the scene's lamp (--light octaves "
+                "and --method reference do)");
     if (method != REFERENCE && input->scene->sun_angle_given && input->scene->sun_angle > 0)
         cli_say("note: --method %s takes the sun as a direction, not a disc (--method reference has it)",
                 method_names[method]);
+    if (method >= PAPER)
+        cli_note_meshes(input->scene, "not shown by this method");
 }
 
 static void render(const cli_common *common)
@@ -387,13 +401,17 @@ static void render(const cli_common *common)
     picture p;
     check_command(common);
     shape_image_format format = choose_format(common);
-    check_save(common);
+    cli_save_check(common);
+    if (cli_save_wanted())
+        render_opaque_save_check();
     cli_input input = cli_volume_input_read(common->arguments[0]);
     const shape_set *set = input.set;
     use_scene(&input);
+    if (method == MARCH)
+        render_march_check(render_opaque_given() || (input.scene && input.scene->mesh_count));
     if (cli_given("lamp-intensity") && !cli_picture_values.lamp_given)
         cli_wrong("--lamp-intensity: there is no lamp (give --lamp X,Y,Z)");
-    shape_opaque *opaque = render_opaque_read();
+    shape_opaque *opaque = render_opaque_read(&input);
     cli_picture_apply(set, &p.view, &p.light);
     p.image = make_image(&p.view, format);
     double start = seconds();
@@ -412,7 +430,7 @@ static void render(const cli_common *common)
     shape_image_destroy(p.image);
     shape_volume_destroy(volume);
     shape_opaque_destroy(opaque);
-    cli_picture_save_scene(&input, &p.view, &p.light);
+    cli_picture_save_scene(&input, &p.view, &p.light, render_opaque_save);
     cli_input_free(&input);
 }
 

@@ -45,10 +45,10 @@ const cli_option render_march_options[] = {
      "single|powder|powder-angle|beer-max|harris|two-pass|octaves|grid",
      "how a point is lit; docs/light.md has each formula [grid]", &values.any_given, false},
     {"shadow", 0, CLI_CHOICE, &values.shadow, 0, 0, "march|cone|grid",
-     "depth to the sun: straight steps, steps astray, a grid made before [march]", &values.shadow_given,
-     false},
+     "depth to the sun or lamp: straight steps, steps astray, a grid made before [march]",
+     &values.shadow_given, false},
     {"light-steps", 0, CLI_INTEGER, &values.light_steps, 1, 100000, "N",
-     "the same as --steps for the way to the sun [50]", &values.light_steps_given, false},
+     "the same as --steps for the way to the sun or lamp [50]", &values.light_steps_given, false},
     {"light-resolution", 0, CLI_INTEGER, &values.resolution, 2, 256, "N",
      "cells of a light grid's longest side [48; paper 40]", &values.resolution_given, false},
     {"powder", 0, CLI_NUMBER, &values.powder, 0, 1000, "K", "of the powder lights, 1 - exp(-K depth) [2]",
@@ -120,8 +120,15 @@ void render_march_check(bool has_things)
     if (v->pixels_given && v->stepping != SHAPE_STEP_EXPONENTIAL)
         cli_wrong("--step-pixels goes with --step exponential");
     if (v->end_given && !has_things)
-        cli_wrong("--step-end has no meaning without --mesh");
+        cli_wrong("--step-end has no meaning without --mesh or a scene with meshes");
+    if (v->light == SHAPE_MARCH_HARRIS && cli_given("colour-grid"))
+        cli_wrong("--colour-grid: --light harris has no colours (choose another)");
     check_light(has_things);
+}
+
+bool render_march_takes_lamp(void)
+{
+    return shape_march_takes_lamp((shape_march_light)values.light, (shape_march_shadow)values.shadow);
 }
 
 shape_march_options render_march_make(double side, const shape_view *view)

@@ -12,6 +12,8 @@ bool render_march_given(void);
 bool render_march_resolution(int *cells);
 /* Ends the program with exit 2 where options do not go together. */
 void render_march_check(bool has_things);
+/* Whether the light and shadow that are chosen can show a lamp. */
+bool render_march_takes_lamp(void);
 /* What the command line says, for clouds whose longest side is so many metres. */
 shape_march_options render_march_make(double side, const shape_view *view);
 

@@ -417,6 +417,7 @@ int main(int argc, char **argv)
     job.set = input.set;
     if (input.scene)
         cli_picture_use_scene(input.scene);
+    cli_note_meshes(input.scene, "not drawn");
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     cli_picture_apply(job.set, &job.view, &job.light);
@@ -438,7 +439,7 @@ int main(int argc, char **argv)
     view_job_free(&job);
     shape_morph_destroy(morph);
     shape_set_destroy(other.set);
-    cli_picture_save_scene(&input, &job.view, &job.light);
+    cli_picture_save_scene(&input, &job.view, &job.light, NULL);
     cli_input_free(&input);
     return cli_finish(&common);
 }

@@ -1,6 +1,8 @@
 // A grid of an OpenVDB file as bricks: choosing it, level sets to fog, the transform.
 #include "bridge/openvdb_grid.hpp"
 
+#include "bridge/openvdb_colour.hpp"
+
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetUtil.h>
 
@@ -27,13 +29,15 @@ std::string list_names(const openvdb::GridPtrVec &grids, bool scalar)
     return names.size() > 300 ? names.substr(0, 300) + " ..." : names;
 }
 
-// The grid that is asked for, or the only scalar one; null with *error set where there is none.
-openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec &grids, const char *wanted, shape_error *error)
+// The grid that is asked for, or the only scalar one that holds no colour; null with *error set where there is none.
+openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec &grids, const char *wanted,
+                              const std::vector<std::string> &colours, shape_error *error)
 {
     openvdb::GridBase::Ptr chosen;
     size_t scalar = 0;
     for (const openvdb::GridBase::Ptr &grid : grids) {
-        if (!is_scalar(*grid) || (wanted && grid->getName() != wanted))
+        bool colour = std::find(colours.begin(), colours.end(), grid->getName()) != colours.end();
+        if (!is_scalar(*grid) || (wanted ? grid->getName() != wanted : colour))
             continue;
         scalar++;
         if (!chosen)
@@ -53,6 +57,27 @@ openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec &grids, const char *want
         chosen.reset();
     }
     return chosen;
+}
+
+// Whether the file has the grids of the colour, of types that hold one.
+bool check_colour(const openvdb::GridPtrVec &grids, const std::vector<std::string> &names, shape_error *error)
+{
+    if (names.size() > 1 && names.size() != 3)
+        return shape_error_set(error, SHAPE_ERROR_FORMAT,
+                               "%zu colour grids (name one of vectors, or three of numbers)", names.size()),
+               false;
+    for (const std::string &name : names) {
+        auto found = std::find_if(grids.begin(), grids.end(),
+                                  [&](const auto &grid) { return grid->getName() == name; });
+        if (found == grids.end() ||
+            !(names.size() == 1 ? vdb_has_colours(**found) : vdb_has_channel(**found)))
+            return shape_error_set(error, SHAPE_ERROR_FORMAT,
+                                   "has no grid of %s called \"%.64s\" for the colour (it has %s)",
+                                   names.size() == 1 ? "vectors" : "numbers", name.c_str(),
+                                   list_names(grids, false).c_str()),
+                   false;
+    }
+    return true;
 }
 
 openvdb::FloatGrid::Ptr to_float(const openvdb::GridBase::Ptr &grid)
@@ -172,7 +197,7 @@ bool fill_brick(void *context, const int low[3], float *values)
 }
 
 shape_status convert(const openvdb::FloatGrid &grid, const shape_vdb_read_options &options,
-                     shape_vdb_contents &contents, shape_error *error)
+                     shape_vdb_contents &contents, openvdb::Coord &origin, shape_error *error)
 {
     openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (box.empty())
@@ -185,7 +210,8 @@ shape_status convert(const openvdb::FloatGrid &grid, const shape_vdb_read_option
             return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                    "the grid \"%s\" reaches from voxel %d to %d, more than the %d that fit",
                                    contents.name, box.min()[a], box.max()[a], SHAPE_GRID_MAX_SIDE - 2);
-    Source source{grid.getConstAccessor(), box.min().offsetBy(-1)};
+    origin = box.min().offsetBy(-1);
+    Source source{grid.getConstAccessor(), origin};
     if (!find_frame(grid.transform(), source.origin, options.y_up, contents.frame))
         return shape_error_set(error, SHAPE_ERROR_FORMAT,
                                "the transform of the grid \"%s\" is not affine, or has no inverse",
@@ -215,14 +241,26 @@ shape_status vdb_load(const char *path, const shape_vdb_read_options &options, s
     openvdb::io::File file(path);
     file.open(false); // no delayed loading: what is wrong shows here
     openvdb::GridPtrVecPtr grids = file.readAllGridMetadata();
-    openvdb::GridBase::Ptr chosen = choose(*grids, options.grid, error);
+    std::vector<std::string> colours = vdb_colour_names(options);
+    if (!grids->empty() && !check_colour(*grids, colours, error))
+        return SHAPE_ERROR_FORMAT;
+    openvdb::GridBase::Ptr chosen = choose(*grids, options.grid, colours, error);
     if (!chosen)
         return SHAPE_ERROR_FORMAT;
     copy_name(chosen->getName(), contents.name);
     openvdb::FloatGrid::Ptr grid = to_float(file.readGrid(chosen->getName()));
+    std::vector<openvdb::GridBase::Ptr> colour;
+    for (const std::string &name : colours)
+        colour.push_back(file.readGrid(name));
     file.close();
     contents.level_set = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
     if (contents.level_set)
         openvdb::tools::sdfToFogVolume(*grid);
-    return convert(*grid, options, contents, error);
+    openvdb::Coord origin;
+    shape_status status = convert(*grid, options, contents, origin, error);
+    size_t taken = status ? 0 : shape_grid_bytes(contents.grid);
+    if (status || colour.empty())
+        return status;
+    return vdb_add_colour(colour, grid->transform(), origin,
+                          taken < options.max_bytes ? options.max_bytes - taken : 0, contents.grid, error);
 }

@@ -36,6 +36,7 @@ struct Message {
     shape_error error;
     shape_vdb_contents contents; // .grid is not used
     shape_grid grid;             // neither are its pointers
+    shape_grid colour[3];        // of a coloured grid, as far as there are bricks
 };
 
 // --- the other process ---
@@ -103,6 +104,15 @@ void load(const char *path, const shape_vdb_read_options &options, Message &mess
         *c = static_cast<unsigned char>(*c) < 0x20 || *c == 0x7f ? '?' : *c;
 }
 
+bool send_grid(int to, const shape_grid &grid)
+{
+    return send(to, grid.table, cells_of(grid) * sizeof *grid.table) &&
+           send(to, grid.values, grid.brick_count * SHAPE_GRID_BRICK_POINTS * sizeof *grid.values) &&
+           send(to, grid.low, grid.brick_count * sizeof *grid.low) &&
+           send(to, grid.high, grid.brick_count * sizeof *grid.high) &&
+           send(to, grid.filled, grid.brick_count * sizeof *grid.filled);
+}
+
 [[noreturn]] void be_the_reader(const char *path, const shape_vdb_read_options &options, int to)
 {
     int quiet = open("/dev/null", O_WRONLY);
@@ -113,19 +123,16 @@ void load(const char *path, const shape_vdb_read_options &options, Message &mess
     limit_memory(options.max_bytes);
     static Message message; // zero
     load(path, options, message);
-    bool sent;
-    if (message.error.status) {
-        sent = send(to, &message, sizeof message);
-    } else {
-        const shape_grid &grid = *message.contents.grid;
-        message.grid = grid;
-        sent = send(to, &message, sizeof message) &&
-               send(to, grid.table, cells_of(grid) * sizeof *grid.table) &&
-               send(to, grid.values, grid.brick_count * SHAPE_GRID_BRICK_POINTS * sizeof *grid.values) &&
-               send(to, grid.low, grid.brick_count * sizeof *grid.low) &&
-               send(to, grid.high, grid.brick_count * sizeof *grid.high) &&
-               send(to, grid.filled, grid.brick_count * sizeof *grid.filled);
-    }
+    if (message.error.status)
+        _exit(send(to, &message, sizeof message) ? 0 : 1);
+    const shape_grid &grid = *message.contents.grid;
+    message.grid = grid;
+    for (int c = 0; c < 3; c++)
+        if (grid.colour[c])
+            message.colour[c] = *grid.colour[c];
+    bool sent = send(to, &message, sizeof message) && send_grid(to, grid);
+    for (int c = 0; c < 3; c++)
+        sent = sent && (!grid.colour[c] || send_grid(to, *grid.colour[c]));
     _exit(sent ? 0 : 1);
 }
 
@@ -147,9 +154,8 @@ bool receive(int from, void *bytes, size_t size)
 }
 
 // Even the reader is not trusted further than necessary: its memory may be damaged.
-bool is_sane(const Message &m, size_t max_bytes)
+bool is_sane(const shape_grid &g, size_t max_bytes)
 {
-    const shape_grid &g = m.grid;
     for (int a = 0; a < 3; a++)
         if (g.points[a] < 2 || g.points[a] > SHAPE_GRID_MAX_SIDE ||
             g.bricks[a] != (g.points[a] - 1 + SHAPE_GRID_BRICK - 1) / SHAPE_GRID_BRICK)
@@ -158,8 +164,26 @@ bool is_sane(const Message &m, size_t max_bytes)
            g.brick_count <= max_bytes / (SHAPE_GRID_BRICK_POINTS * sizeof *g.values) + 1;
 }
 
-bool receive_grid(int from, shape_grid *grid)
+// A channel of the colour has the points of its density.
+bool is_channel(const Message &m, int c, size_t max_bytes)
 {
+    return is_sane(m.colour[c], max_bytes) && !m.colour[c].coloured &&
+           !std::memcmp(m.colour[c].points, m.grid.points, sizeof m.grid.points);
+}
+
+// What came ahead of it goes into a grid of our own; false where it is cut short, or memory is out.
+bool receive_grid(int from, const shape_grid &head, shape_grid *&made)
+{
+    shape_grid *grid = made = static_cast<shape_grid *>(std::calloc(1, sizeof *grid));
+    if (!grid)
+        return false;
+    *grid = head;
+    grid->table = nullptr;
+    grid->values = grid->low = grid->high = nullptr;
+    grid->filled = nullptr;
+    for (int c = 0; c < 3; c++)
+        grid->colour[c] = nullptr;
+    grid->users = 1;
     size_t cells = cells_of(*grid), bricks = grid->brick_count;
     grid->table = static_cast<uint32_t *>(std::malloc(cells * sizeof *grid->table));
     grid->values = static_cast<float *>(std::malloc(bricks * SHAPE_GRID_BRICK_POINTS * sizeof *grid->values));
@@ -196,17 +220,12 @@ shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_con
     message.error.text[sizeof message.error.text - 1] = 0;
     if (message.error.status)
         return shape_error_set(error, message.error.status, "%s: %s", path, message.error.text);
-    if (!is_sane(message, max_bytes))
-        return damaged(path, error);
-    shape_grid *grid = static_cast<shape_grid *>(std::calloc(1, sizeof *grid));
-    if (!grid)
-        return shape_error_memory(error);
-    *grid = message.grid;
-    grid->table = nullptr;
-    grid->values = grid->low = grid->high = nullptr;
-    grid->filled = nullptr;
-    grid->users = 1;
-    if (!receive_grid(from, grid)) {
+    shape_grid *grid = nullptr;
+    bool good = is_sane(message.grid, max_bytes) && receive_grid(from, message.grid, grid);
+    for (int c = 0; c < 3 && good && grid->coloured; c++)
+        good = !message.grid.colour[c] ||
+               (is_channel(message, c, max_bytes) && receive_grid(from, message.colour[c], grid->colour[c]));
+    if (!good) {
         shape_grid_release(grid);
         return damaged(path, error);
     }
@@ -270,7 +289,7 @@ shape_status check_header(const char *path, const unsigned char *bytes, size_t s
 
 extern "C" shape_vdb_read_options shape_vdb_read_defaults(void)
 {
-    shape_vdb_read_options options = {nullptr, size_t(4) << 30, false, nullptr};
+    shape_vdb_read_options options = {nullptr, size_t(4) << 30, false, nullptr, nullptr};
     return options;
 }
 

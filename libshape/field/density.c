@@ -124,6 +124,20 @@ float shape_cloud_density(const shape_volume_cloud *cloud, shape_vec3 p)
     return shape_cloud_density_at(cloud, p, shape_cloud_u2(cloud, p));
 }
 
+bool shape_cloud_is_coloured(const shape_volume_cloud *cloud)
+{
+    return cloud->field.model == SHAPE_MODEL_GRID && cloud->list->grid->coloured;
+}
+
+void shape_cloud_albedo(const shape_volume_cloud *cloud, shape_vec3 p, float rgb[3])
+{
+    rgb[0] = rgb[1] = rgb[2] = 1;
+    if (shape_cloud_is_coloured(cloud))
+        shape_grid_colour(cloud->list->grid, p, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = fminf(rgb[c] * cloud->medium.albedo, 1);
+}
+
 double shape_volume_extinction(const shape_volume *volume, shape_dvec3 world)
 {
     double sum = 0;

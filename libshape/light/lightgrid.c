@@ -12,7 +12,8 @@
 
 shape_lightgrid_options shape_lightgrid_defaults(void)
 {
-    shape_lightgrid_options options = {.resolution = 48, .step = 0.5f, .scattering = true, .threads = 0};
+    shape_lightgrid_options options = {
+        .resolution = 48, .step = 0.5f, .scattering = true, .threads = 0, .channel = -1};
     return options;
 }
 
@@ -137,21 +138,32 @@ static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightg
     return status;
 }
 
-/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
-static void fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
-                            float *extinction)
+/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. Of a coloured cloud the channel's
+ * mean albedo too, weighed by the density. */
+static void fill_cells(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int channel, int threads,
+                       float *extinction)
 {
     int rows = grid->size[1] * grid->size[2];
 #pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
     for (int i = 0; i < rows; i++)
         for (int x = 0; x < grid->size[0]; x++) {
-            float sum = 0;
-            for (int corner = 0; corner < 8; corner++)
-                sum += shape_cloud_density(cloud,
-                                           cell_point(grid, x, i % grid->size[1], i / grid->size[1],
-                                                      corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f,
-                                                      corner & 4 ? 0.75f : 0.25f));
-            extinction[(size_t)i * (size_t)grid->size[0] + (size_t)x] = sum / 8 * cloud->medium.extinction;
+            size_t cell = (size_t)i * (size_t)grid->size[0] + (size_t)x;
+            float sum = 0, scattered = 0;
+            for (int corner = 0; corner < 8; corner++) {
+                float rgb[3];
+                shape_vec3 p =
+                    cell_point(grid, x, i % grid->size[1], i / grid->size[1], corner & 1 ? 0.75f : 0.25f,
+                               corner & 2 ? 0.75f : 0.25f, corner & 4 ? 0.75f : 0.25f);
+                float density = shape_cloud_density(cloud, p);
+                sum += density;
+                if (!grid->albedos)
+                    continue;
+                shape_cloud_albedo(cloud, p, rgb);
+                scattered += density * rgb[channel];
+            }
+            extinction[cell] = sum / 8 * cloud->medium.extinction;
+            if (grid->albedos)
+                grid->albedos[cell] = sum > 0 ? scattered / sum : 0;
         }
 }
 
@@ -206,15 +218,19 @@ static shape_status solve_levels(ordinates_problem *p, int threads, shape_error 
     }
     size_t cells = (size_t)half.size[0] * (size_t)half.size[1] * (size_t)half.size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
+    float *shares = p->shares ? malloc(cells * sizeof *shares) : NULL;
     half.moments = calloc(cells * ORDINATES_CELL, sizeof *half.moments);
     shape_status status = SHAPE_OK;
-    if (!extinction || !beam || !half.moments)
+    if (!extinction || !beam || !half.moments || !shares != !p->shares)
         status = shape_error_memory(error);
     if (!status) {
         coarsen(p->size, p->extinction, half.size, extinction);
         coarsen(p->size, p->beam, half.size, beam);
         half.extinction = extinction;
         half.beam = beam;
+        if (shares)
+            coarsen(p->size, p->shares, half.size, shares);
+        half.shares = shares;
         status = solve_levels(&half, threads, error);
     }
     if (!status) {
@@ -223,6 +239,7 @@ static shape_status solve_levels(ordinates_problem *p, int threads, shape_error 
     }
     free(extinction);
     free(beam);
+    free(shares);
     free(half.moments);
     return status;
 }
@@ -245,25 +262,43 @@ static void store(const ordinates_problem *p, size_t cells, shape_lightgrid *gri
     }
 }
 
-static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int threads,
-                            shape_lightgrid *grid, shape_error *error)
+/* The delta scaling of one cell: what is scattered within `peak` of the forward direction is not lost. Returns the albedo
+ * of the rest. */
+static float scale_cell(const shape_lightgrid *grid, size_t cell, float albedo, float peak, float *extinction,
+                        float *beam)
+{
+    float thin = 1 - albedo * peak;
+    extinction[cell] *= thin;
+    beam[cell] = expf(-thin * grid->cells[cell * SHAPE_LIGHTGRID_VALUES]);
+    return thin > 0 ? albedo * (1 - peak) / thin : 0;
+}
+
+static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int channel,
+                            int threads, shape_lightgrid *grid, shape_error *error)
 {
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
-    float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments);
+    float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments), *shares = NULL;
     shape_status status = extinction && beam && moments ? SHAPE_OK : shape_error_memory(error);
+    if (!status && channel >= 0 && shape_cloud_is_coloured(cloud)) {
+        grid->albedos = malloc(cells * sizeof *grid->albedos);
+        shares = malloc(cells * sizeof *shares);
+        status = grid->albedos && shares ? SHAPE_OK : shape_error_memory(error);
+    }
     if (!status) {
-        float share, rest, albedo = cloud->medium.albedo;
-        shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &share, &rest);
-        float thin = 1 - albedo * share;
-        fill_extinction(cloud, grid, threads, extinction);
+        float peak, rest, albedo = 0;
+        shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &peak, &rest);
+        fill_cells(cloud, grid, channel, threads, extinction);
         for (size_t i = 0; i < cells; i++) {
-            extinction[i] *= thin;
-            beam[i] = expf(-thin * grid->cells[i * SHAPE_LIGHTGRID_VALUES]);
+            albedo =
+                scale_cell(grid, i, shares ? grid->albedos[i] : cloud->medium.albedo, peak, extinction, beam);
+            if (shares)
+                shares[i] = albedo;
         }
         ordinates_problem p = {.extinction = extinction,
                                .beam = beam,
-                               .albedo = thin > 0 ? albedo * (1 - share) / thin : 0,
+                               .albedo = shares ? 1 : albedo,
+                               .shares = shares,
                                .g = rest,
                                .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
                                .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
@@ -282,6 +317,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     }
     free(extinction);
     free(beam);
+    free(shares);
     free(moments);
     return status;
 }
@@ -295,6 +331,9 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     if (options->resolution < 2 || options->resolution > 256)
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "a light grid of %d cells (it must be 2 to 256)",
                                options->resolution);
+    if (options->channel < -1 || options->channel > 2)
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                               "there is no colour channel %d (it must be -1 to 2)", options->channel);
     if (!(options->step > 0))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
                                "the light grid's step is %g (it must be above 0)", (double)options->step);
@@ -306,7 +345,7 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     if (!status)
         status = march_to_sun(&pass, threads, grid, error);
     if (!status && options->scattering)
-        status = scatter(c, light, threads, grid, error);
+        status = scatter(c, light, options->channel, threads, grid, error);
     if (status)
         shape_lightgrid_free(grid);
     return status;
@@ -315,5 +354,6 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
 void shape_lightgrid_free(shape_lightgrid *grid)
 {
     free(grid->cells);
+    free(grid->albedos);
     memset(grid, 0, sizeof *grid);
 }

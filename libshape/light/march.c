@@ -49,6 +49,9 @@ static const char *find_wrong_choice(const shape_march_options *o)
         return "end: there is none of that number";
     if (o->silver && (o->light == SHAPE_MARCH_GRID || o->light == SHAPE_MARCH_OCTAVES))
         return "silver: the lights grid and octaves have a phase function of their own";
+    if (shape_lamp_shines(&o->lamp) && !shape_march_takes_lamp(o->light, o->shadow))
+        return "lamp: light and shadow grids and two passes know the sun alone (choose another light or "
+               "shadow)";
     return NULL;
 }
 
@@ -91,7 +94,13 @@ shape_status shape_march_check(const shape_march_options *options, shape_error *
     const char *wrong = find_wrong_choice(options);
     if (!wrong)
         wrong = find_wrong_number(options);
-    return wrong ? shape_error_set(error, SHAPE_ERROR_ARGUMENT, "march %s", wrong) : SHAPE_OK;
+    return wrong ? shape_error_set(error, SHAPE_ERROR_ARGUMENT, "march %s", wrong)
+                 : shape_lamp_check(&options->lamp, error);
+}
+
+bool shape_march_takes_lamp(shape_march_light light, shape_march_shadow shadow)
+{
+    return light == SHAPE_MARCH_HARRIS || (march_needs_depth(light) && shadow != SHAPE_SHADOW_GRID);
 }
 
 /* --- a marcher --- */
@@ -128,9 +137,11 @@ static void choose_steps(shape_marcher *m)
 }
 
 /* The grid that the options' light looks up, if any. */
-static shape_status build_grid(shape_marcher *m, size_t i, shape_lightgrid *grid, shape_error *error)
+static shape_status build_grid(shape_marcher *m, size_t i, int channel, shape_lightgrid *grid,
+                               shape_error *error)
 {
     shape_lightgrid_options options = shape_lightgrid_defaults();
+    options.channel = channel;
     options.resolution = m->options.resolutions ? m->options.resolutions[i] : m->options.resolution;
     options.opaque = m->options.opaque;
     if (m->options.light == SHAPE_MARCH_GRID)
@@ -145,6 +156,33 @@ static shape_status build_grid(shape_marcher *m, size_t i, shape_lightgrid *grid
     return shape_lightgrid_build(m->volume, i, &m->light, &options, grid, error);
 }
 
+/* A coloured cloud's light is solved once a channel, and each is taken from its own solution. */
+static shape_status light_channels(shape_marcher *m, size_t i, shape_dvec3 eye, shape_error *error)
+{
+    march_cloud *cloud = &m->clouds[i];
+    size_t cells = 0;
+    for (int c = 0; c < 3; c++) {
+        shape_lightgrid_free(&cloud->grid);
+        shape_status status = build_grid(m, i, c, &cloud->grid, error);
+        const int *n = cloud->grid.size;
+        if (status)
+            return status;
+        cells = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+        m->work->cells += cells;
+        float *seen = calloc(cells, 4 * sizeof *seen);
+        if (!seen)
+            return shape_error_memory(error);
+        shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, m->upper, m->lower, eye, seen);
+        if (!cloud->seen)
+            cloud->seen = seen;
+        for (size_t k = 0; k < cells; k++)
+            cloud->seen[4 * k + (size_t)c] = seen[4 * k + (size_t)c];
+        if (cloud->seen != seen)
+            free(seen);
+    }
+    return SHAPE_OK;
+}
+
 static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, shape_error *error)
 {
     march_cloud *cloud = &m->clouds[i];
@@ -156,7 +194,9 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
                                    shape_vec3_make((float)sun.x, (float)sun.y, (float)sun.z));
     if (cloud->hidden || shape_box_is_empty(cloud->cloud->box))
         return SHAPE_OK;
-    shape_status status = build_grid(m, i, &cloud->grid, error);
+    if (m->options.light == SHAPE_MARCH_GRID && shape_cloud_is_coloured(cloud->cloud))
+        return light_channels(m, i, eye, error);
+    shape_status status = build_grid(m, i, -1, &cloud->grid, error);
     const int *n = cloud->grid.size;
     m->work->cells += (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
     if (status || m->options.light != SHAPE_MARCH_GRID)
@@ -200,10 +240,19 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
     m->light = *light;
     m->sky = shape_sky_make(light);
     m->options = *options;
+    for (int c = 0; c < 3; c++)
+        m->has_sun = m->has_sun || light->sun_irradiance[c] > 0;
+    m->has_lamp = shape_lamp_shines(&options->lamp);
     find_box(m);
     choose_steps(m);
     shape_sky_mean(&m->sky, m->upper, m->lower);
     status = make_blue(m, error);
+    for (size_t i = 0; i < volume->cloud_count && !status; i++)
+        if (options->light == SHAPE_MARCH_HARRIS && shape_cloud_is_coloured(&volume->clouds[i]))
+            status =
+                shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                                "march light: Harris' recurrence has no colours (choose another light, or "
+                                "leave the grid's colour out)");
     for (size_t i = 0; i < volume->cloud_count && !status; i++)
         status = light_cloud(m, i, eye, error);
     m->options.resolutions = NULL;
@@ -352,8 +401,13 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
                                   double start, shape_march_scratch *scratch, double rgb[3],
                                   shape_error *error)
 {
-    march_ray ray = {marcher,  origin, direction, scratch, 1 - start,
-                     SHAPE_OK, error,  {0, 0, 0}, 0,       {0, 0, 0}};
+    march_ray ray = {.marcher = marcher,
+                     .origin = origin,
+                     .direction = direction,
+                     .scratch = scratch,
+                     .first = 1 - start,
+                     .status = SHAPE_OK,
+                     .error = error};
     size_t count;
     shape_opaque_hit hit;
     shape_status status = march_path_find(marcher, &scratch->view, origin, direction, false, &count, error);

@@ -22,9 +22,11 @@ struct shape_marcher {
     shape_sky sky;
     float upper[3], lower[3]; /* mean radiance of the sky's halves */
     shape_march_options options;
+    bool has_sun, has_lamp;
     double step, light_step;
-    double deep;           /* the optical depth of options.cutoff */
-    const shape_grid *voxels; /* the grid of a volume that is one grid, seen along the ray itself; else NULL */
+    double deep; /* the optical depth of options.cutoff */
+    const shape_grid
+        *voxels;           /* the grid of a volume that is one grid, seen along the ray itself; else NULL */
     shape_dvec3 low, high; /* the world box around all clouds */
     march_cloud *clouds;
     uint16_t *blue; /* SHAPE_JITTER_BLUE */
@@ -44,6 +46,7 @@ typedef struct march_ray {
     double first; /* the first step's length, as a share of a whole one, above 0 to 1 */
     shape_status status;
     shape_error *error;
+    double width;         /* of the step that a look stands for [m]; 0: a point */
     shape_dvec3 shift;    /* from the ray to where it is looked at, where starts are locked to a grid */
     double depth, rgb[3]; /* gathered so far */
 } march_ray;
@@ -61,16 +64,29 @@ void march_path_free(shape_march_path *path);
 
 march_sample march_look(march_ray *ray, float t);
 
-/* --- march_sun.c --- */
+/* --- march_lamp.c --- */
+
+/* The way from a point to a light. */
+typedef struct march_way {
+    shape_dvec3 direction; /* unit */
+    double length;         /* [m]; infinite to the sun */
+} march_way;
+
+march_way march_sun_way(const shape_marcher *marcher);
+/* The way to the lamp, and *falloff, which its intensity becomes irradiance by. False where the point is the lamp. */
+bool march_lamp_way(const march_ray *ray, shape_dvec3 world, march_way *way, double *falloff);
+
+/* --- march_depth.c --- */
 
 bool march_needs_depth(shape_march_light light);
-/* The optical depth from a world point to the sun, infinite behind something opaque. cloud and p: the cloud that asks,
- * and the point in its frame; NULL: none, and it is marched. */
-double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *cloud, shape_vec3 p);
+/* The optical depth from a world point along the way to a light, infinite behind something opaque. cloud and p: the cloud
+ * that asks, and the point in its frame; NULL: none, and it is marched. */
+double march_depth(march_ray *ray, shape_dvec3 world, const march_way *way, const march_cloud *cloud,
+                   shape_vec3 p);
 /* A depth as `shade` thins it; what is opaque stays so, where 0 times infinity would be NaN. */
-double march_sun_shaded(double shade, double depth);
-/* The share of the sun's light that comes there by Harris' recurrence. */
-double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo);
+double march_shaded(double shade, double depth);
+/* The share of the light that comes there along the way by Harris' recurrence. */
+double march_harris(march_ray *ray, shape_dvec3 world, const march_way *way, double albedo);
 /* Red, green and blue of `seen` at a point of its cloud's frame, as march_grid_value has each. */
 void march_grid_colour(const shape_lightgrid *grid, const float *seen, shape_vec3 p, double rgb[3]);
 /* Value `value` of a grid at a point of its cloud's frame, between cell centres; constant beyond the outermost. */

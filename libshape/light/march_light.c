@@ -10,7 +10,7 @@ static const double pi = 3.14159265358979323846;
 enum { OCTAVES = 8 };
 
 /* Copy k has extinction, strength and mean cosine halved k times; the strengths sum to 1. */
-static double octaves(const shape_medium *medium, float cos_sun, double depth)
+static double octaves(const shape_medium *medium, float cosine, double depth)
 {
     double sum = 0, share = 0.5 / (1 - ldexp(1, -OCTAVES));
     shape_medium wide = *medium;
@@ -19,15 +19,15 @@ static double octaves(const shape_medium *medium, float cos_sun, double depth)
         wide.g = shape_phase_mean_cosine(medium);
     }
     for (int k = 0; k < OCTAVES; k++, share /= 2, depth /= 2) {
-        sum += share * (double)shape_phase(k ? &wide : medium, cos_sun) * exp(-depth);
+        sum += share * (double)shape_phase(k ? &wide : medium, cosine) * exp(-depth);
         wide.g /= 2;
         wide.g2 /= 2;
     }
     return sum;
 }
 
-/* How much of the sun's light is left at that depth, by the law. */
-static double attenuation(const shape_march_options *options, double cos_sun, double depth)
+/* How much of a light is left at that depth, by the law. cosine: between the way one looks and the way to the light. */
+static double attenuation(const shape_march_options *options, double cosine, double depth)
 {
     if (isinf(depth)) /* behind something opaque, where k = 0 would make NaN of it */
         return 0;
@@ -36,7 +36,7 @@ static double attenuation(const shape_march_options *options, double cos_sun, do
         return exp(-depth) * -expm1(-options->powder * depth);
     case SHAPE_MARCH_POWDER_ANGLE:
         /* The angle lies between the way one looks and the way the light goes: 1 with the sun behind the eye. */
-        return exp(-depth) * (1 - (1 - cos_sun) / 2 * exp(-options->powder * depth));
+        return exp(-depth) * (1 - (1 - cosine) / 2 * exp(-options->powder * depth));
     case SHAPE_MARCH_BEER_MAX:
         return fmax(exp(-depth), 0.7 * exp(-depth / 4));
     default:
@@ -53,51 +53,79 @@ typedef struct lit_point {
 } lit_point;
 
 /* With `silver`, thin parts scatter straight on and thick ones all round. */
-static double phase(const shape_marcher *m, const lit_point *at, double cos_sun)
+static double phase(const shape_marcher *m, const lit_point *at, double cosine)
 {
     const double highest = 0.99; /* 1 is a flash in one direction */
     if (!m->options.silver)
-        return (double)shape_phase(&at->cloud->cloud->medium, (float)cos_sun);
-    return (double)shape_phase_hg((float)fmin(exp(-at->extinction * m->step), highest), (float)cos_sun);
+        return (double)shape_phase(&at->cloud->cloud->medium, (float)cosine);
+    return (double)shape_phase_hg((float)fmin(exp(-at->extinction * m->step), highest), (float)cosine);
 }
 
-/* Radiance that the cloud's scattering adds at a point, for extinction 1 and sun light of irradiance 1. */
-static double sun_source(march_ray *ray, const lit_point *at, double cos_sun, double *depth)
+/* Radiance that the cloud's scattering adds at a point, for extinction 1, albedo 1 and a light of irradiance 1 there. */
+static double scattered(march_ray *ray, const lit_point *at, const march_way *way, double *depth)
 {
     const shape_marcher *m = ray->marcher;
     const shape_medium *medium = &at->cloud->cloud->medium;
-    double albedo = (double)medium->albedo;
+    double cosine = shape_dvec3_dot(ray->direction, way->direction);
     if (m->options.light == SHAPE_MARCH_HARRIS)
-        return albedo * phase(m, at, cos_sun) * march_sun_harris(ray, at->world, albedo);
+        return phase(m, at, cosine) * march_harris(ray, at->world, way, (double)medium->albedo);
     if (m->options.light == SHAPE_MARCH_TWO_PASS) {
         const shape_lightgrid *grid = &at->cloud->grid;
         double received = march_grid_value(grid, grid->cells, SHAPE_LIGHTGRID_VALUES, 0, at->p);
-        if (shape_opaque_blocks(m->options.opaque, at->world, m->light.sun, INFINITY))
+        if (shape_opaque_blocks(m->options.opaque, at->world, way->direction, way->length))
             received = 0;
-        return albedo * received * (1 + phase(m, at, cos_sun)) / pi;
+        return received * (1 + phase(m, at, cosine)) / pi;
     }
-    *depth = march_sun_shaded(m->options.shade, march_sun_depth(ray, at->world, at->cloud, at->p));
+    *depth = march_shaded(m->options.shade, march_depth(ray, at->world, way, at->cloud, at->p));
     if (m->options.light == SHAPE_MARCH_OCTAVES)
-        return albedo * octaves(medium, (float)cos_sun, *depth);
-    return albedo * phase(m, at, cos_sun) * attenuation(&m->options, cos_sun, *depth);
+        return octaves(medium, (float)cosine, *depth);
+    return phase(m, at, cosine) * attenuation(&m->options, cosine, *depth);
+}
+
+static void add_lamp(march_ray *ray, const lit_point *at, double rgb[3])
+{
+    const shape_lamp *lamp = &ray->marcher->options.lamp;
+    march_way way;
+    double falloff, depth;
+    if (!march_lamp_way(ray, at->world, &way, &falloff))
+        return;
+    double value = falloff * scattered(ray, at, &way, &depth);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += value * (double)lamp->intensity[c];
+}
+
+/* The eye's own grid has the albedo in it, but for clouds of several colours. */
+static void look_up(const lit_point *at, const float albedo[3], double rgb[3])
+{
+    const march_cloud *cloud = at->cloud;
+    bool coloured = shape_cloud_is_coloured(cloud->cloud);
+    march_grid_colour(&cloud->grid, cloud->seen, at->p, rgb);
+    for (int c = 0; c < 3 && coloured; c++)
+        rgb[c] *= (double)albedo[c];
 }
 
 static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
 {
     const shape_marcher *m = ray->marcher;
-    const march_cloud *cloud = at->cloud;
+    bool sky = m->options.light == SHAPE_MARCH_OCTAVES;
+    float albedo[3];
+    shape_cloud_albedo(at->cloud->cloud, at->p, albedo);
     if (m->options.light == SHAPE_MARCH_GRID) {
-        march_grid_colour(&cloud->grid, cloud->seen, at->p, rgb);
+        look_up(at, albedo, rgb);
         return;
     }
-    double depth = 0;
-    double value = sun_source(ray, at, shape_dvec3_dot(ray->direction, m->light.sun), &depth);
+    double depth = 0, value = 0;
+    march_way sun = march_sun_way(m);
+    if (m->has_sun || sky)
+        value = scattered(ray, at, &sun, &depth);
     for (int c = 0; c < 3; c++)
         rgb[c] = value * (double)m->light.sun_irradiance[c];
-    if (m->options.light == SHAPE_MARCH_OCTAVES)
-        for (int c = 0; c < 3; c++)
-            rgb[c] += (double)cloud->cloud->medium.albedo * exp(-fmin(depth, 1e3) / 8) *
-                      (double)(m->upper[c] + m->lower[c]) / 2;
+    for (int c = 0; c < 3 && sky; c++)
+        rgb[c] += exp(-fmin(depth, 1e3) / 8) * (double)(m->upper[c] + m->lower[c]) / 2;
+    if (m->has_lamp)
+        add_lamp(ray, at, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= (double)albedo[c];
 }
 
 /* The square of u at a point of cloud i; above the support's where there is nothing. */

@@ -56,8 +56,10 @@ static void simpson38(march_ray *ray, float a, float b)
 
 static void exponential(march_ray *ray, float a, float b)
 {
+    double width = (double)b - (double)a;
+    ray->width = width;
     march_sample f = march_look(ray, a + (b - a) * 0.5f);
-    double width = (double)b - (double)a, step = f.extinction * width;
+    double step = f.extinction * width;
     /* A cloud that only glows has no depth. */
     if (!(step > 0)) {
         add(ray, &f, ray->depth, width);

@@ -28,15 +28,15 @@ static direction make_direction(const ordinates_problem *p, int octant, int whic
 
 /* The source function of all lanes in one direction: scattered light, and the sun's first collisions. The two are cut
  * at 0 together: cut one by one they would make light, backwards of a forward peak. */
-static inline void source(const ordinates_problem *p, const float *moments, float beam, const direction *d,
-                          float sun_factor, float out[ORDINATES_LANES])
+static inline void source(const ordinates_problem *p, const float *moments, float share, float beam,
+                          const direction *d, float sun_factor, float out[ORDINATES_LANES])
 {
-    const float sun[ORDINATES_LANES] = {sun_factor * beam, 0, 0, 0};
+    const float sun[ORDINATES_LANES] = {sun_factor * (share * beam), 0, 0, 0}, albedo = share * p->albedo;
     for (int lane = 0; lane < ORDINATES_LANES; lane++) {
         float along = d->omega[0] * moments[ORDINATES_LANES + lane] +
                       d->omega[1] * moments[2 * ORDINATES_LANES + lane] +
                       d->omega[2] * moments[3 * ORDINATES_LANES + lane];
-        float value = p->albedo * (moments[lane] + 3 * p->g * along) + sun[lane];
+        float value = albedo * (moments[lane] + 3 * p->g * along) + sun[lane];
         out[lane] = value > 0 ? value : 0;
     }
 }
@@ -69,7 +69,8 @@ static void sweep(const ordinates_problem *p, const direction *d, float *radianc
                 const float *in_z = from_z ? from_z + (size_t)x * ORDINATES_LANES : border;
                 float *out = radiance + cell * ORDINATES_LANES, *add = sum + cell * ORDINATES_CELL;
                 float sigma = p->extinction[cell], scale = 1 / (kx + ky + kz + sigma), s[ORDINATES_LANES];
-                source(p, p->moments + cell * ORDINATES_CELL, p->beam[cell], d, sun_factor, s);
+                source(p, p->moments + cell * ORDINATES_CELL, p->shares ? p->shares[cell] : 1, p->beam[cell],
+                       d, sun_factor, s);
                 for (int lane = 0; lane < ORDINATES_LANES; lane++) {
                     float value =
                         (kx * in_x[lane] + ky * in_y[lane] + kz * in_z[lane] + sigma * s[lane]) * scale;

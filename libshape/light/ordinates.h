@@ -16,6 +16,7 @@ typedef struct ordinates_problem {
     const float *extinction; /* a cell's mean, after the delta scaling [1/m] */
     const float *beam;       /* a cell's unscattered irradiance from the sun, for one of 1 */
     float albedo, g;         /* after the delta scaling */
+    const float *shares;     /* what albedo is multiplied by in each cell; NULL: 1 */
     shape_vec3 sun_travel;   /* unit direction in which sun light travels, grid's frame */
     shape_vec3 up;           /* the world's up, grid's frame, unit */
     float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */

@@ -1,6 +1,6 @@
 /* One light path: free paths in the clouds, collisions and matt surfaces, and at each a look at the sun and the lamp
- * (next-event estimation; Kajiya 1986 for volumes). Albedo, phase function and extinction are grey, so a path carries one
- * number, and the tint of the surfaces that it met. */
+ * (next-event estimation; Kajiya 1986 for volumes). Phase function and extinction are grey, so all channels share a path,
+ * which carries one number, and the tint of what it met: surfaces, and clouds whose albedo has a colour. */
 #include "light/path.h"
 
 #include <math.h>
@@ -26,8 +26,8 @@ path_scene path_scene_make(const majorant_grid *grid, const shape_light *light,
         s.irradiance[c] = (double)light->sun_irradiance[c];
         s.intensity[c] = (double)options->lamp.intensity[c];
         s.has_sun = s.has_sun || s.irradiance[c] > 0;
-        s.has_lamp = s.has_lamp || s.intensity[c] > 0;
     }
+    s.has_lamp = shape_lamp_shines(&options->lamp);
     s.max_bounces = options->max_bounces;
     s.opaque = options->opaque;
     return s;
@@ -147,16 +147,12 @@ static bool survives(double *weight, shape_random *random)
     return true;
 }
 
-/* Onto a surface: its colour goes into weight and tint. False where it is black. */
-static bool land(const path_scene *s, light_path *path, const shape_opaque_hit *hit, scatterer *at)
+/* A colour goes into weight and tint. False where nothing is left. */
+static bool stain(light_path *path, const float rgb[3])
 {
-    shape_dvec3 p = shape_dvec3_sub(hit->point, s->grid->origin);
     double most = 0;
-    path->p[0] = p.x, path->p[1] = p.y, path->p[2] = p.z;
-    at->medium = NULL;
-    at->normal[0] = hit->normal.x, at->normal[1] = hit->normal.y, at->normal[2] = hit->normal.z;
     for (int c = 0; c < 3; c++) {
-        path->tint[c] *= (double)hit->albedo[c];
+        path->tint[c] *= (double)rgb[c];
         most = track_max(most, path->tint[c]);
     }
     if (!(most > 0))
@@ -165,6 +161,33 @@ static bool land(const path_scene *s, light_path *path, const shape_opaque_hit *
         path->tint[c] /= most;
     path->weight *= most;
     return true;
+}
+
+/* Onto a surface. False where it is black. */
+static bool land(const path_scene *s, light_path *path, const shape_opaque_hit *hit, scatterer *at)
+{
+    shape_dvec3 p = shape_dvec3_sub(hit->point, s->grid->origin);
+    path->p[0] = p.x, path->p[1] = p.y, path->p[2] = p.z;
+    at->medium = NULL;
+    at->normal[0] = hit->normal.x, at->normal[1] = hit->normal.y, at->normal[2] = hit->normal.z;
+    return stain(path, hit->albedo);
+}
+
+/* A collision where the path stands. False where the cloud is black. */
+static bool collide(light_path *path, const majorant_cloud *cloud, scatterer *at)
+{
+    float rgb[3], p[3];
+    at->medium = &cloud->cloud->medium;
+    if (!shape_cloud_is_coloured(cloud->cloud)) {
+        path->weight *= (double)at->medium->albedo;
+        return path->weight > 0;
+    }
+    for (int a = 0; a < 3; a++) {
+        const double *row = cloud->to_local[a];
+        p[a] = (float)(row[0] * path->p[0] + row[1] * path->p[1] + row[2] * path->p[2] + row[3]);
+    }
+    shape_cloud_albedo(cloud->cloud, shape_vec3_make(p[0], p[1], p[2]), rgb);
+    return stain(path, rgb);
 }
 
 /* A new direction: by the phase function, or by the cosine to the normal. */
@@ -196,11 +219,8 @@ static bool advance(const path_scene *s, light_path *path, double depth, bool la
     bool met =
         s->opaque && shape_opaque_find(s->opaque, to_world(s, path->p),
                                        shape_dvec3_make(path->d[0], path->d[1], path->d[2]), INFINITY, &hit);
-    if (track_collide(s->grid, path->p, path->d, hit.t, depth, path->random, &cloud)) {
-        at->medium = &s->grid->clouds[cloud].cloud->medium;
-        path->weight *= (double)at->medium->albedo;
-        return !last && path->weight > 0;
-    }
+    if (track_collide(s->grid, path->p, path->d, hit.t, depth, path->random, &cloud))
+        return !last && collide(path, &s->grid->clouds[cloud], at);
     if (!met) {
         add_sky(s, path);
         return false;

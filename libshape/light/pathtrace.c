@@ -45,9 +45,24 @@ shape_pathtrace_options shape_pathtrace_defaults(void)
     return options;
 }
 
+bool shape_lamp_shines(const shape_lamp *lamp)
+{
+    return lamp->intensity[0] > 0 || lamp->intensity[1] > 0 || lamp->intensity[2] > 0;
+}
+
+shape_status shape_lamp_check(const shape_lamp *lamp, shape_error *error)
+{
+    for (int c = 0; c < 3; c++)
+        if (!(lamp->intensity[c] >= 0) || !isfinite(lamp->intensity[c]))
+            return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                                   "lamp intensity: must be finite and not negative");
+    if (!isfinite(lamp->position.x) || !isfinite(lamp->position.y) || !isfinite(lamp->position.z))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "lamp position: must be finite");
+    return SHAPE_OK;
+}
+
 shape_status shape_pathtrace_check(const shape_pathtrace_options *options, shape_error *error)
 {
-    const shape_lamp *lamp = &options->lamp;
     if (options->samples < 1 || options->samples > 1 << 20)
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "samples %d: must be from 1 to 1048576",
                                options->samples);
@@ -59,13 +74,7 @@ shape_status shape_pathtrace_check(const shape_pathtrace_options *options, shape
     if (!(options->sun_angle >= 0 && options->sun_angle <= 90))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "sun_angle %g: must be from 0 to 90 degrees",
                                options->sun_angle);
-    for (int c = 0; c < 3; c++)
-        if (!(lamp->intensity[c] >= 0) || !isfinite(lamp->intensity[c]))
-            return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
-                                   "lamp intensity: must be finite and not negative");
-    if (!isfinite(lamp->position.x) || !isfinite(lamp->position.y) || !isfinite(lamp->position.z))
-        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "lamp position: must be finite");
-    return SHAPE_OK;
+    return shape_lamp_check(&options->lamp, error);
 }
 
 static void to_grid(const majorant_grid *grid, shape_dvec3 origin, shape_dvec3 direction, double p[3],

@@ -5,8 +5,8 @@
 #include "shape/phase.h"
 
 typedef struct seen_light {
-    float sun[3], upper[3], lower[3]; /* albedo included */
-    float mean_cosine, peak, rest, thin;
+    float sun[3], upper[3], lower[3]; /* albedo included, but of a grid with albedos */
+    float mean_cosine, peak, rest;
 } seen_light;
 
 static float hg(float g, float cosine)
@@ -15,10 +15,10 @@ static float hg(float g, float cosine)
     return (1 - g * g) / (12.566371f * d * sqrtf(d));
 }
 
-static void see_cell(const seen_light *l, const float *cell, float phase, float cos_sun, shape_vec3 travel,
-                     float travel_up, float *rgba)
+static void see_cell(const seen_light *l, const float *cell, float albedo, float phase, float cos_sun,
+                     shape_vec3 travel, float travel_up, float *rgba)
 {
-    float direct = expf(-cell[0]), wide = expf(-l->thin * cell[0]);
+    float direct = expf(-cell[0]), wide = expf(-(1 - albedo * l->peak) * cell[0]);
     float beam = direct * phase + (1 - l->peak) * (wide - direct) * hg(l->rest, cos_sun);
     float sun = cell[1] + 3 * l->mean_cosine * (cell[4] * travel.x + cell[5] * travel.y + cell[6] * travel.z);
     float upper = cell[2] + 3 * l->mean_cosine * cell[7] * travel_up;
@@ -36,11 +36,11 @@ void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud 
     const shape_medium *medium = &cloud->medium;
     seen_light l = {.mean_cosine = shape_phase_mean_cosine(medium)};
     shape_delta_scaling(l.mean_cosine, &l.peak, &l.rest);
-    l.thin = 1 - medium->albedo * l.peak;
+    float albedo = grid->albedos ? 1 : medium->albedo;
     for (int i = 0; i < 3; i++) {
-        l.sun[i] = medium->albedo * light->sun_irradiance[i];
-        l.upper[i] = medium->albedo * sky_upper[i];
-        l.lower[i] = medium->albedo * sky_lower[i];
+        l.sun[i] = albedo * light->sun_irradiance[i];
+        l.upper[i] = albedo * sky_upper[i];
+        l.lower[i] = albedo * sky_lower[i];
     }
     const double(*m)[4] = cloud->frame.m;
     shape_dvec3 e = shape_frame_point(&cloud->inverse, eye);
@@ -65,7 +65,8 @@ void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud 
             float cos_sun = w.x * (float)light->sun.x + w.y * (float)light->sun.y + w.z * (float)light->sun.z;
             float phase =
                 medium->phase == SHAPE_PHASE_HG ? hg(medium->g, cos_sun) : shape_phase(medium, cos_sun);
-            see_cell(&l, grid->cells + cell * SHAPE_LIGHTGRID_VALUES, phase, cos_sun, shape_vec3_scale(v, -1),
-                     -w.y, rgba + cell * 4);
+            see_cell(&l, grid->cells + cell * SHAPE_LIGHTGRID_VALUES,
+                     grid->albedos ? grid->albedos[cell] : medium->albedo, phase, cos_sun,
+                     shape_vec3_scale(v, -1), -w.y, rgba + cell * 4);
         }
 }

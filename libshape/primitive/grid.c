@@ -184,6 +184,8 @@ void shape_grid_release(shape_grid *grid)
 {
     if (!grid || __atomic_sub_fetch(&grid->users, 1, __ATOMIC_ACQ_REL))
         return;
+    for (int c = 0; c < 3; c++)
+        shape_grid_release(grid->colour[c]);
     free(grid->table);
     free(grid->values);
     free(grid->low);
@@ -192,11 +194,23 @@ void shape_grid_release(shape_grid *grid)
     free(grid);
 }
 
+size_t shape_grid_bytes(const shape_grid *grid)
+{
+    return sizeof *grid + table_size(grid) * sizeof *grid->table +
+           grid->brick_count * (POINTS * sizeof *grid->values + sizeof *grid->low + sizeof *grid->high);
+}
+
 /* --- looking --- */
 
 float shape_grid_sample(const shape_grid *grid, shape_vec3 p)
 {
     return grid_look(grid, p.x, p.y, p.z);
+}
+
+void shape_grid_colour(const shape_grid *grid, shape_vec3 p, float rgb[3])
+{
+    for (int c = 0; c < 3; c++)
+        rgb[c] = !grid->coloured ? 1 : grid->colour[c] ? shape_grid_sample(grid->colour[c], p) : 0;
 }
 
 /* The range over the points [low, high] of one brick, relative to its first. */

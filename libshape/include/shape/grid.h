@@ -34,6 +34,10 @@ typedef struct shape_grid {
     float most;     /* the largest value */
     float gain;     /* density is the sample times this, >= 0 and finite; 1 unless the caller sets it */
     unsigned users; /* lists that name it; by shape_grid_keep and shape_grid_release only */
+    bool coloured;  /* scattering has a colour, of which the cloud's albedo is multiplied: */
+    struct shape_grid
+        *colour[3]; /* red, green, blue, 0 or more, each with as many points; the grid owns them. NULL in a
+                                     coloured grid: that channel is 0 */
 } shape_grid;
 
 /* Where a grid's values come from. brick() fills the 9^3 values, x fastest, of the points from low[] to low[] + 8 (those
@@ -57,6 +61,10 @@ void shape_grid_release(shape_grid *grid);
 
 /* The value at p [voxels], times the gain. Trilinear. */
 float shape_grid_sample(const shape_grid *grid, shape_vec3 p);
+/* The colour at p [voxels], trilinear: red, green, blue, 0 or more; 1 each where the grid has none. */
+void shape_grid_colour(const shape_grid *grid, shape_vec3 p, float rgb[3]);
+/* Bytes that the grid takes, without those of its colour. */
+size_t shape_grid_bytes(const shape_grid *grid);
 /* Bounds of the samples within the box [voxels]. */
 void shape_grid_range(const shape_grid *grid, const double low[3], const double high[3], float *least,
                       float *most);

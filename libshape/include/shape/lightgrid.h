@@ -21,9 +21,10 @@ extern "C" {
 enum { SHAPE_LIGHTGRID_VALUES = 8 };
 
 typedef struct shape_lightgrid {
-    int size[3];   /* cells along x, y, z; cell centres lie half a cell inside the box */
-    shape_box box; /* cloud's frame */
-    float *cells;  /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
+    int size[3];    /* cells along x, y, z; cell centres lie half a cell inside the box */
+    shape_box box;  /* cloud's frame */
+    float *cells;   /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
+    float *albedos; /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
 } shape_lightgrid;
 
 typedef struct shape_lightgrid_options {
@@ -31,6 +32,8 @@ typedef struct shape_lightgrid_options {
     float step;      /* of the march to the sun, in cells of the noise's first octave; default 0.5 */
     bool scattering; /* solve for the scattered light too; default true. Else values 1 to 7 are 0 */
     int threads;     /* 0: all; the result does not depend on it */
+    int channel; /* of a coloured cloud's albedo, 0 red, 1 green, 2 blue, -1 the medium's alone; default -1. No matter for
+                    clouds without colour */
     const shape_opaque *opaque; /* finished; throws shadows on the cells' middles; default NULL */
 } shape_lightgrid_options;
 
@@ -50,8 +53,8 @@ shape_status shape_lightgrid_build_2018(const shape_volume *volume, size_t cloud
                                         shape_error *error);
 void shape_lightgrid_free(shape_lightgrid *grid);
 
-/* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included) of each
- * cell towards the eye [world], red, green, blue and 0, into rgba [cells][4]. The same sum as shaders/light/lightgrid.glsl
+/* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid
+ * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green, blue and 0, into rgba [cells][4]. The same sum as shaders/light/lightgrid.glsl
  * takes at a point; sky_upper and sky_lower are shape_sky_mean's. */
 void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
                           const shape_light *light, const float sky_upper[3], const float sky_lower[3],

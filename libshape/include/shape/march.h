@@ -42,7 +42,7 @@ typedef enum shape_march_end {
                        cloud, as an image negative, where steps are long */
 } shape_march_end;
 
-/* How a point is lit; depth is the optical depth to the sun. */
+/* How a point is lit; depth is the optical depth to the sun, or to the lamp for what the lamp gives. */
 typedef enum shape_march_light {
     SHAPE_MARCH_SINGLE,       /* the sun once scattered: Beer's law, exp(-depth). The sky lights nothing */
     SHAPE_MARCH_POWDER,       /* the same times 1 - exp(-k depth) (Páleník 2016 Eq. 3.14): dark rims */
@@ -56,7 +56,7 @@ typedef enum shape_march_light {
     SHAPE_MARCH_GRID /* all scatterings of sun and sky, from the light pass (shape/lightgrid.h); the default */
 } shape_march_light;
 
-/* How the optical depth to the sun is found, where the light asks for it. */
+/* How the optical depth to the sun and the lamp is found, where the light asks for it. */
 typedef enum shape_march_shadow {
     SHAPE_SHADOW_MARCH, /* steps straight to the sun; the default */
     SHAPE_SHADOW_CONE, /* steps that go astray by 5, 10, 15, 20 degrees in turn (Páleník 2016 section 5.1): soft */
@@ -77,21 +77,24 @@ typedef struct shape_march_options {
                       2 tan(fov / 2) / height */
     double light_step; /* of the march to the sun [m]; 0: twice the step */
     int resolution;    /* of grids of light, cells along a cloud's longest side, 2 to 256; default 48 */
-    const int *resolutions; /* one a cloud, in place of `resolution`; 0: the cloud is not drawn and has no grid, and only
+    const int *
+        resolutions; /* one a cloud, in place of `resolution`; 0: the cloud is not drawn and has no grid, and only
                                throws shadows. Read by shape_marcher_create alone. NULL (default): all alike */
-    int samples;       /* rays a pixel, 1 to 4096; default 1 */
-    double powder;     /* k of the powder laws, 0 to 1000; default 2 */
+    int samples;     /* rays a pixel, 1 to 4096; default 1 */
+    double powder; /* k of the powder laws, 0 to 1000; default 2 */
     double shade; /* multiplies depths to the sun, 0 to 1 (sigma' of Páleník 2016 section 3.3); default 1 */
     double forward;    /* share of scattering that Harris' light keeps, 0 to 1; default 0.5 */
     float emission[3]; /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
     bool silver;       /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
     double lock;       /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
-    double
-        cutoff; /* a ray ends where less than this share of what is behind gets through, and a way to the sun where
-                           less of the sun does; 1e-12 to 0.1; default 1e-8 */
-    double alpha_power;         /* coverage is raised to it, 0.01 to 100 (alpha correction); default 1 */
-    double alpha_peel;          /* pixels with less coverage show no cloud, 0 to 1; default 0 */
-    uint64_t seed;              /* of the jitter */
+    /* A ray ends where less than this share of what is behind gets through, and a way to the sun where less of the sun
+     * does; 1e-12 to 0.1; default 1e-8. */
+    double cutoff;
+    double alpha_power; /* coverage is raised to it, 0.01 to 100 (alpha correction); default 1 */
+    double alpha_peel;  /* pixels with less coverage show no cloud, 0 to 1; default 0 */
+    uint64_t seed;      /* of the jitter */
+    /* Default none; takes a light of a depth or Harris', and no SHAPE_SHADOW_GRID: the grids are the sun's. */
+    shape_lamp lamp;
     const shape_opaque *opaque; /* finished; default NULL */
     shape_progress progress;    /* default none */
     void *progress_context;
@@ -99,6 +102,9 @@ typedef struct shape_march_options {
 
 shape_march_options shape_march_defaults(void);
 shape_status shape_march_check(const shape_march_options *options, shape_error *error);
+
+/* Whether such a light and shadow can show a lamp. */
+bool shape_march_takes_lamp(shape_march_light light, shape_march_shadow shadow);
 
 /* A volume lit and ready to be marched. Opaque; reading it is thread-safe. */
 typedef struct shape_marcher shape_marcher;

@@ -30,8 +30,10 @@ double shape_tracer_transmittance(const shape_tracer *tracer, shape_dvec3 origin
 /* A path that was followed until it left the volume. */
 typedef struct shape_walk {
     shape_dvec3 direction; /* in which it left; the starting one where nothing was met */
-    double weight;         /* the product of the albedos met; 0 where max_bounces was passed */
-    int bounces;           /* collisions met */
+    double
+        weight;  /* the product of the media's albedos met, a grid's colour left out; 0 where max_bounces was
+                              passed */
+    int bounces; /* collisions met */
 } shape_walk;
 
 /* Follows one path from origin along direction (a unit vector). */
@@ -43,6 +45,11 @@ typedef struct shape_lamp {
     shape_dvec3 position; /* metres, world */
     float intensity[3];   /* 0 each: no lamp */
 } shape_lamp;
+
+/* Whether it shines at all. */
+bool shape_lamp_shines(const shape_lamp *lamp);
+/* SHAPE_ERROR_ARGUMENT where a number is negative or not finite. */
+shape_status shape_lamp_check(const shape_lamp *lamp, shape_error *error);
 
 typedef struct shape_pathtrace_options {
     int samples; /* paths a pixel, 1 to 2^20; default 64. With `noise`: the most */

@@ -71,6 +71,10 @@ float shape_cloud_u2(const shape_volume_cloud *cloud, shape_vec3 p);
 float shape_cloud_density_at(const shape_volume_cloud *cloud, shape_vec3 p, float u2);
 /* Density at p, 0 to 1. */
 float shape_cloud_density(const shape_volume_cloud *cloud, shape_vec3 p);
+/* Whether a cloud's albedo is not one number: a grid with a colour of its own. */
+bool shape_cloud_is_coloured(const shape_volume_cloud *cloud);
+/* The albedo at p, red, green, blue, 0 to 1: the medium's, times a grid's colour there, cut at 1. */
+void shape_cloud_albedo(const shape_volume_cloud *cloud, shape_vec3 p, float rgb[3]);
 /* Extinction at a world point, the sum over clouds of density times extinction [1/m]. */
 double shape_volume_extinction(const shape_volume *volume, shape_dvec3 world);
 

@@ -1,5 +1,5 @@
-/* The way from a point to the sun: its optical depth by steps, by steps that go astray in a cone, or from a grid; and
- * Harris' recurrence. */
+/* The way from a point to the sun or the lamp: its optical depth by steps, by steps that go astray in a cone, or from a
+ * grid; and Harris' recurrence. */
 #include <math.h>
 
 #include "light/march.h"
@@ -77,76 +77,80 @@ static double way_out(const shape_marcher *m, shape_dvec3 p, shape_dvec3 d)
     return far > near ? far : 0;
 }
 
-/* Step k leaves the way to the sun by 5, 10, 15 or 20 degrees, turned round it by the golden angle (Páleník 2016 section
- * 5.1: a cone of 40 degrees). Steps are looked at in their middle. */
-static double cone_depth(const march_ray *ray, shape_dvec3 world)
+/* Step k leaves the way to the light by 5, 10, 15 or 20 degrees, turned round it by the golden angle (Páleník 2016 section
+ * 5.1: a cone of 40 degrees). Steps are looked at in their middle; the last one before a lamp is cut short. */
+static double cone_depth(const march_ray *ray, shape_dvec3 world, const march_way *to)
 {
     enum { MOST_STEPS = 100000 };
     const shape_marcher *m = ray->marcher;
-    shape_dvec3 axis = m->light.sun, other = {fabs(axis.y) < 0.9 ? 0 : 1, fabs(axis.y) < 0.9 ? 1 : 0, 0};
+    shape_dvec3 axis = to->direction, other = {fabs(axis.y) < 0.9 ? 0 : 1, fabs(axis.y) < 0.9 ? 1 : 0, 0};
     shape_dvec3 x = shape_dvec3_normalize(shape_dvec3_cross(other, axis)), y = shape_dvec3_cross(axis, x);
-    double length = way_out(m, world, axis), depth = 0;
-    for (int k = 0; k < MOST_STEPS && way_out(m, world, axis) > 0; k++) {
+    double longest = fmin(m->light_step, way_out(m, world, axis)), left = to->length, depth = 0;
+    for (int k = 0; k < MOST_STEPS && left > 0 && way_out(m, world, axis) > 0; k++) {
         double angle = (5 + 5 * (k % 4)) * pi / 180, turn = 2.399963229728653 * k;
-        double step = fmin(m->light_step, length), aside = step * sin(angle);
+        bool last = longest * cos(angle) >= left;
+        double step = last ? left / cos(angle) : longest, aside = step * sin(angle);
         shape_dvec3 way =
             shape_dvec3_add(shape_dvec3_scale(x, aside * cos(turn)), shape_dvec3_scale(y, aside * sin(turn)));
         way = shape_dvec3_add(way, shape_dvec3_scale(axis, step * cos(angle)));
         depth +=
             step * shape_volume_extinction(m->volume, shape_dvec3_add(world, shape_dvec3_scale(way, 0.5)));
         world = shape_dvec3_add(world, way);
+        left = last ? 0 : left - step * cos(angle);
     }
     return depth;
 }
 
-/* Through the one voxel grid that there is, as far as the sun still shines. */
+/* Towards the sun through the one voxel grid that there is, as far as the sun still shines. */
 static double voxel_depth(const shape_marcher *m, const march_cloud *cloud, shape_vec3 p)
 {
     double extinction = (double)cloud->cloud->medium.extinction, shade = fmax(m->options.shade, 1e-6);
     return extinction * grid_way_depth(&cloud->sun, p, (float)m->light_step, m->deep / (extinction * shade));
 }
 
-double march_sun_depth(march_ray *ray, shape_dvec3 world, const march_cloud *cloud, shape_vec3 p)
+double march_depth(march_ray *ray, shape_dvec3 world, const march_way *way, const march_cloud *cloud,
+                   shape_vec3 p)
 {
     const shape_marcher *m = ray->marcher;
     double depth = 0;
-    if (m->options.opaque && shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
+    if (m->options.opaque && shape_opaque_blocks(m->options.opaque, world, way->direction, way->length))
         return INFINITY;
     if (cloud && cloud->grid.cells && m->options.shadow == SHAPE_SHADOW_GRID)
         return march_grid_value(&cloud->grid, cloud->grid.cells, SHAPE_LIGHTGRID_VALUES, 0, p);
     if (m->options.shadow == SHAPE_SHADOW_CONE)
-        return cone_depth(ray, world);
-    if (cloud && cloud->cloud->field.model == SHAPE_MODEL_GRID && m->volume->cloud_count == 1)
+        return cone_depth(ray, world, way);
+    if (isinf(way->length) && cloud && cloud->cloud->field.model == SHAPE_MODEL_GRID &&
+        m->volume->cloud_count == 1)
         return voxel_depth(m, cloud, p);
     if (!ray->status)
         ray->status =
-            shape_volume_optical_depth(m->volume, world, m->light.sun, 0, INFINITY, (float)m->light_step,
-                                       &ray->scratch->shadow, &depth, ray->error);
+            shape_volume_optical_depth(m->volume, world, way->direction, 0, (float)way->length,
+                                       (float)m->light_step, &ray->scratch->shadow, &depth, ray->error);
     return depth;
 }
 
-double march_sun_shaded(double shade, double depth)
+double march_shaded(double shade, double depth)
 {
     return isinf(depth) ? depth : shade * depth;
 }
 
-/* Seen from the sun, I_n = exp(-eta_n) (I_{n-1} + g_{n-1}) with g = forward eta I (Páleník 2016 Eq. 3.12, whose printed
+/* Seen from the light, I_n = exp(-eta_n) (I_{n-1} + g_{n-1}) with g = forward eta I (Páleník 2016 Eq. 3.12, whose printed
  * form has exp(+eta_n) and lost exp(-eta_n) in its last term), so each step but the last, which the point stands in,
  * brings a factor (1 + forward eta). */
-double march_sun_harris(march_ray *ray, shape_dvec3 world, double albedo)
+double march_harris(march_ray *ray, shape_dvec3 world, const march_way *way, double albedo)
 {
     const shape_marcher *m = ray->marcher;
     shape_march_path *path = &ray->scratch->sun;
     double depth = 0, gain = 1, forward = m->options.forward * albedo;
     size_t count = 0;
-    if (m->options.opaque && shape_opaque_blocks(m->options.opaque, world, m->light.sun, INFINITY))
+    if (m->options.opaque && shape_opaque_blocks(m->options.opaque, world, way->direction, way->length))
         return 0;
     if (!ray->status)
-        ray->status = march_path_find(m, path, world, m->light.sun, true, &count, ray->error);
+        ray->status = march_path_find(m, path, world, way->direction, true, &count, ray->error);
     if (ray->status)
         return 0;
-    for (size_t i = 0; i < count; i += 2) {
-        double from = (double)path->edges[i], length = (double)path->edges[i + 1] - from;
+    for (size_t i = 0; i < count && (double)path->edges[i] < way->length; i += 2) {
+        double from = (double)path->edges[i], length = fmin((double)path->edges[i + 1], way->length) - from;
         double steps = fmax(ceil(fmin(length / m->light_step, 1e6)), 1), width = length / steps;
         for (int k = 0; k < (int)steps; k++) {
             float t = (float)(from + width * (k + 0.5));
