@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render_resume.h"
 #include "shape/file.h"
 
 enum { MAX_MESH_FILE = 0x7fffffff };
@@ -85,6 +86,7 @@ shape_opaque *render_opaque_read(void)
         static const shape_frame turned = {{{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}}};
         read_colour(i, albedo);
         shape_mesh *mesh = read_mesh(meshes.text[i], &z_up);
+        render_resume_note_mesh(mesh, z_up, albedo);
         if (shape_opaque_add(opaque, mesh, z_up ? &turned : NULL, albedo, &error))
             cli_fail("%s: %s", meshes.text[i], error.text);
         shape_mesh_destroy(mesh);
