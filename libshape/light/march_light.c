@@ -125,7 +125,7 @@ march_sample march_look(march_ray *ray, float t)
         float u2 = find_u2(ray, i, p, t);
         if (!(u2 <= cloud->support * cloud->support))
             continue;
-        double density = (double)shape_cloud_density_at(cloud, p, u2), rgb[3];
+        double density = (double)shape_cloud_density_at(cloud, p, u2), rgb[3] = {0, 0, 0};
         lit_point at = {&m->clouds[i], shape_dvec3_add(origin, shape_dvec3_scale(ray->direction, (double)t)),
                         p, density * (double)cloud->medium.extinction};
         if (!(density > 0))
