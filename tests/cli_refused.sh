@@ -80,3 +80,9 @@ view="--headless --samples 2 --light-grid 8 --size 32x18"
 ! "$bin/neph-render" --compare day.pfm noon.pfm --tolerance 1e-3 >/dev/null || fail "the day and the turntable change nothing"
 "$bin/neph-view" -q c.neph --bench 3 --light-grid 4 $small --eye 0,1,20 --save-scene bench.json >/dev/null
 grep -q '"eye": \[0, 1, 20\]' bench.json || fail "--bench saved the eye that it had moved: $(grep -A4 eye bench.json)"
+
+# One line a mistake, whatever an argument or a file's name holds; no terminal obeys it.
+broken=$(printf 'a\nb\033[2J')
+refused 2 'a?b?\[2J' "$bin/neph-gauss" "$broken"
+refused 2 'a?b?\[2J' "$bin/neph-gauss" --count "$broken"
+refused 1 'a?b?\[2J' "$bin/neph-info" "$broken"

@@ -28,6 +28,7 @@ void __wrap_free(void *block);
 
 static long allocations_left = -1; /* below 0: no limit */
 static long live, most;            /* blocks; bytes of the largest that was asked for */
+static int other_errors;           /* 1: a library may call it another error than memory */
 
 static int refuse(size_t size)
 {
@@ -87,11 +88,15 @@ static void fail_each(work run, long at_least, int spared)
         if (!status && !used_up)
             break;
         if (!status) {
-            assert_true(spared-- > 0);
+            if (spared-- <= 0)
+                fail_msg("allocation %ld failed, and nobody says so", failures);
             continue;
         }
-        assert_int_equal(status, SHAPE_ERROR_MEMORY);
-        assert_non_null(strstr(error.text, "memory"));
+        if (status != SHAPE_ERROR_MEMORY && !other_errors)
+            fail_msg("allocation %ld failed: status %d, \"%s\"", failures, (int)status, error.text);
+        if (status == SHAPE_ERROR_MEMORY)
+            assert_non_null(strstr(error.text, "memory"));
+        assert_true(error.text[0] && !strchr(error.text, '\n'));
         assert_true(failures < 1000);
     }
     assert_true(failures >= at_least);

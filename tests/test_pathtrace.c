@@ -405,6 +405,61 @@ static void picture_is_the_same_for_any_number_of_threads(void **state)
     sample_end(&scene);
 }
 
+static bool end_at(void *context, int samples)
+{
+    return samples < *(const int *)context;
+}
+
+/* Ended between two passes and gone on with, a picture is the same to the last bit, and so is its variance. */
+static void picture_in_pieces_is_the_same(void **state)
+{
+    (void)state;
+    enum { W = 12, H = 7, N = 3 * W * H };
+    float whole[N], whole_variance[N], pieces[N], pieces_variance[N];
+    static shape_pathtrace_pixel pixels[W * H];
+    sample_scene scene = sample_cumulus(6, 5);
+    shape_tracer *tracer = trace(&scene);
+    shape_light light = shape_light_defaults();
+    shape_view view = shape_view_defaults();
+    shape_pathtrace_options options = shape_pathtrace_defaults();
+    shape_pathtrace_result result;
+    shape_error error;
+    shape_dvec3 min, max;
+    int end = 20;
+    view.width = W, view.height = H;
+    options.samples = 70;
+    assert_true(shape_set_bounds(scene.set, &min, &max));
+    shape_view_frame(&view, &light, min, max);
+    assert_int_equal(
+        shape_pathtrace_render(tracer, &view, &light, &options, whole, whole_variance, &result, &error),
+        SHAPE_OK);
+    options.pixels = pixels;
+    options.keep = end_at;
+    options.keep_context = &end;
+    assert_int_equal(
+        shape_pathtrace_render(tracer, &view, &light, &options, pieces, pieces_variance, &result, &error),
+        SHAPE_OK);
+    assert_true(result.cancelled && result.samples >= 20 && result.samples < 70);
+    assert_memory_not_equal(whole, pieces, sizeof whole);
+    options.samples_before = result.samples;
+    options.keep = NULL;
+    assert_int_equal(
+        shape_pathtrace_render(tracer, &view, &light, &options, pieces, pieces_variance, &result, &error),
+        SHAPE_OK);
+    assert_int_equal(result.samples, 70);
+    assert_memory_equal(whole, pieces, sizeof whole);
+    assert_memory_equal(whole_variance, pieces_variance, sizeof whole_variance);
+    options.samples_before = 71;
+    assert_int_equal(shape_pathtrace_render(tracer, &view, &light, &options, pieces, NULL, &result, &error),
+                     SHAPE_ERROR_ARGUMENT);
+    options.samples_before = 1;
+    options.pixels = NULL;
+    assert_int_equal(shape_pathtrace_render(tracer, &view, &light, &options, pieces, NULL, &result, &error),
+                     SHAPE_ERROR_ARGUMENT);
+    shape_tracer_destroy(tracer);
+    sample_end(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -420,6 +475,7 @@ int main(void)
         cmocka_unit_test(overlapping_clouds_share_collisions),
         cmocka_unit_test(lamp_lights_by_the_square_of_distance),
         cmocka_unit_test(picture_is_the_same_for_any_number_of_threads),
+        cmocka_unit_test(picture_in_pieces_is_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

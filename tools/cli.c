@@ -19,11 +19,15 @@ static const char *program_name = "neph";
 static bool be_quiet;
 static char error_place[512];
 
+/* One line, whatever stands in it: names of files and texts of options may hold line breaks and a terminal's commands. */
 static void print_line(const char *format, va_list arguments)
 {
-    fprintf(stderr, "%s: %s", program_name, error_place);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    char line[8192];
+    size_t length = (size_t)snprintf(line, sizeof line, "%s: %s", program_name, error_place);
+    vsnprintf(line + length, sizeof line - length, format, arguments);
+    for (char *c = line; *c; c++)
+        *c = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
+    fprintf(stderr, "%s\n", line);
 }
 
 void cli_error(const char *format, ...)
@@ -211,18 +215,24 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         table[i].argInfo = all[i]->kind == CLI_FLAG ? POPT_ARG_NONE : POPT_ARG_STRING;
         table[i].val = i + 1;
     }
+    show_help = show_version = generate_given = false;
     cli_record_start(program->name);
+    cli_given_start();
     poptContext context = poptGetContext(program->name, argc, (const char **)argv, table, 0);
+    if (!context)
+        cli_fail("not enough memory");
     int code;
     while ((code = poptGetNextOpt(context)) > 0) {
         static char *kept[CLI_MAX_OPTIONS]; /* for the program's life: CLI_TEXT points into it */
         char *text = poptGetOptArg(context);
+        free(kept[code - 1]);
+        kept[code - 1] = text;
         cli_store(all[code - 1], text ? text : "");
         cli_record_option(all[code - 1], text);
         cli_note_given(all[code - 1], text);
-        free(kept[code - 1]);
-        kept[code - 1] = text;
     }
+    if (code == POPT_ERROR_MALLOC)
+        cli_fail("not enough memory");
     if (code < -1)
         cli_wrong("%s: %s (see --help)", poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(code));
     be_quiet = common->quiet;

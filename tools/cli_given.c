@@ -10,6 +10,11 @@ static const cli_option *given[CLI_MAX_OPTIONS];
 static const char *texts[CLI_MAX_OPTIONS];
 static int count;
 
+void cli_given_start(void)
+{
+    count = 0;
+}
+
 void cli_note_given(const cli_option *option, const char *text)
 {
     int i = 0;

@@ -27,6 +27,8 @@ void cli_record_option(const cli_option *option, const char *text);
 const cli_record *cli_record_now(void);
 cli_record *cli_record_use(cli_record *record);
 
+/* Forgets what was given. */
+void cli_given_start(void);
 /* Keeps that an option was given; the text, NULL for a flag, lives as long as the program, or until it is given again. */
 void cli_note_given(const cli_option *option, const char *text);
 

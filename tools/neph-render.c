@@ -12,6 +12,8 @@
 #include "cli_volume.h"
 #include "render_march.h"
 #include "render_opaque.h"
+#include "opaque_scene.h"
+#include "render_resume.h"
 #include "shape/budget.h"
 #include "shape/denoise.h"
 #include "shape/file.h"
@@ -81,6 +83,7 @@ static const cli_group groups[] = {{"Picture", cli_picture_options},
                                    {"Opaque things", render_opaque_options},
                                    {"Marching (--method march)", render_march_options},
                                    {"The methods of 2018 (--method paper, paper-ndt)", paper_options},
+                                   {"Long work (--method reference)", render_resume_options},
                                    {"Comparing", compare_options},
                                    {"Scene", cli_scene_options},
                                    {0}};
@@ -93,6 +96,7 @@ static const cli_program program = {
              "PFM (linear radiance). An EXR also holds the variance of each pixel.",
     .examples = "  neph-render cloud.neph -o cloud.png --spp 256\n"
                 "  neph-render cloud.neph -o cloud.exr --noise 0.02 --sun 120,20\n"
+                "  neph-render cloud.neph -o cloud.exr --spp 4096 --resume cloud.sums\n"
                 "  neph-render cloud.neph -o cloud.png --method march --steps 200\n"
                 "  neph-render cloud.neph -o cloud.png --method march --error 0.05\n"
                 "  neph-render smoke.vdb -o smoke.png --density-gain 3 --extinction 0.5\n"
@@ -215,6 +219,7 @@ static void report(const picture_outcome *outcome, const shape_image *image, dou
 
 /* What is in the picture, and from where. */
 typedef struct picture {
+    const cli_input *input;
     const shape_set *set;
     shape_volume *volume;
     const shape_opaque *opaque;
@@ -249,11 +254,13 @@ static picture_outcome trace(const cli_common *common, const picture *p)
         if (!variance)
             cli_fail("out of memory");
     }
+    render_resume_start(p->input, &p->view, &p->light, &options);
     cli_check(shape_tracer_create(p->volume, &tracer, &error), &error);
     cli_check(shape_pathtrace_render(tracer, &p->view, &p->light, &options, p->image->pixels, variance,
                                      &result, &error),
               &error);
     shape_tracer_destroy(tracer);
+    render_resume_end(&options, result.samples);
     if (denoise)
         smooth(p->image, variance);
     if (!layer)
@@ -343,6 +350,9 @@ static void check_method(void)
         cli_wrong("rules, steps, --jitter, alpha and the light options belong to --method march");
     if (method != REFERENCE && denoise)
         cli_wrong("--denoise belongs to --method reference");
+    if (method != REFERENCE && render_resume_given())
+        cli_wrong("--%s belongs to --method reference", render_resume_given());
+    render_resume_check();
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
     check_error();
@@ -411,11 +421,13 @@ static void render(const cli_common *common)
         render_march_check(render_opaque_given() || (input.scene && input.scene->mesh_count));
     if (cli_given("lamp-intensity") && !cli_picture_values.lamp_given)
         cli_wrong("--lamp-intensity: there is no lamp (give --lamp X,Y,Z)");
+    opaque_scene_tell(render_resume_note_mesh);
     shape_opaque *opaque = render_opaque_read(&input);
     cli_picture_apply(set, &p.view, &p.light);
     p.image = make_image(&p.view, format);
     double start = seconds();
     cli_check(shape_volume_create(set, &volume, &error), &error);
+    p.input = &input;
     p.set = set;
     p.volume = volume;
     p.opaque = opaque;

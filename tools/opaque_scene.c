@@ -8,6 +8,13 @@
 #include "cli_scene.h"
 #include "mesh_file.h"
 
+static opaque_scene_visit *told;
+
+void opaque_scene_tell(opaque_scene_visit *visit)
+{
+    told = visit;
+}
+
 static void add(shape_opaque *opaque, const shape_scene_mesh *mesh, const shape_mesh *read,
                 shape_mesh_format format, const char *path)
 {
@@ -16,6 +23,8 @@ static void add(shape_opaque *opaque, const shape_scene_mesh *mesh, const shape_
     shape_frame frame = shape_scene_mesh_frame(mesh, mesh_file_z_up(format));
     for (int c = 0; c < 3; c++)
         albedo[c] = (float)mesh->albedo[c];
+    if (told)
+        told(read, &frame, albedo);
     if (shape_opaque_add(opaque, read, &frame, albedo, &error))
         cli_fail("%s: %s", path, error.text);
 }

@@ -11,4 +11,8 @@ void opaque_scene_add(shape_opaque *opaque, const shape_scene *scene, const char
 /* One mesh from a file, which the path opens as it is. */
 void opaque_scene_add_file(shape_opaque *opaque, const shape_scene_mesh *mesh, const char *path);
 
+/* Is called with each mesh from now on, its frame in the world and its albedo. */
+typedef void opaque_scene_visit(const shape_mesh *mesh, const shape_frame *frame, const float albedo[3]);
+void opaque_scene_tell(opaque_scene_visit *visit);
+
 #endif

@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-shape_status shape_error_set(shape_error *error, shape_status status, const char *format, ...)
+shape_status(shape_error_set)(shape_error *error, shape_status status, const char *format, ...)
 {
     if (error) {
         va_list arguments;
@@ -16,7 +16,7 @@ shape_status shape_error_set(shape_error *error, shape_status status, const char
     return status;
 }
 
-shape_status shape_error_memory(shape_error *error)
+shape_status(shape_error_memory)(shape_error *error)
 {
     return shape_error_set(error, SHAPE_ERROR_MEMORY, "not enough memory (make the cloud smaller)");
 }

@@ -3,6 +3,10 @@
 
 #include <float.h>
 
+/* (&v.x)[axis] is used throughout: the members lie side by side. */
+_Static_assert(sizeof(shape_vec3) == 3 * sizeof(float), "shape_vec3 has gaps");
+_Static_assert(sizeof(shape_dvec3) == 3 * sizeof(double), "shape_dvec3 has gaps");
+
 shape_dvec3 shape_dvec3_normalize(shape_dvec3 a)
 {
     double length = shape_dvec3_length(a);

@@ -1,11 +1,13 @@
-// OpenVDB files from strangers: the header is checked here, the rest is read in a process of its own with limited memory,
-// which hands its bricks over through a pipe. OpenVDB trusts what a file says of itself; whatever that leads to ends with
+// OpenVDB files from strangers: the header is checked here, the rest is read in a process of its own with limited memory
+// and time, which hands its bricks over through a pipe. OpenVDB trusts what a file says of itself; whatever that leads to ends with
 // that process.
 #include "shape/vdb_read.h"
 
 #include <openvdb/version.h>
 
 #include <cerrno>
+#include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -64,6 +66,23 @@ void limit_memory(size_t bytes)
 #endif
 }
 
+// Seconds of processor time: some, one a MiB of the file, and one for every 64 MiB that the voxels may take.
+rlim_t allowed_seconds(size_t file_bytes, size_t max_bytes)
+{
+    return 10 + rlim_t(file_bytes >> 20) + rlim_t(max_bytes >> 26);
+}
+
+void limit_time(rlim_t seconds)
+{
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_CPU, &limit))
+        return;
+    if (seconds < limit.rlim_cur)
+        limit.rlim_cur = seconds;
+    setrlimit(RLIMIT_CPU, &limit);
+    signal(SIGXCPU, SIG_DFL);
+}
+
 bool send(int to, const void *bytes, size_t size)
 {
     const char *at = static_cast<const char *>(bytes);
@@ -113,7 +132,8 @@ bool send_grid(int to, const shape_grid &grid)
            send(to, grid.filled, grid.brick_count * sizeof *grid.filled);
 }
 
-[[noreturn]] void be_the_reader(const char *path, const shape_vdb_read_options &options, int to)
+[[noreturn]] void be_the_reader(const char *path, size_t file_bytes, const shape_vdb_read_options &options,
+                                int to)
 {
     int quiet = open("/dev/null", O_WRONLY);
     if (quiet >= 0)
@@ -121,6 +141,7 @@ bool send_grid(int to, const shape_grid &grid)
     struct rlimit none = {0, 0};
     setrlimit(RLIMIT_CORE, &none);
     limit_memory(options.max_bytes);
+    limit_time(allowed_seconds(file_bytes, options.max_bytes));
     static Message message; // zero
     load(path, options, message);
     if (message.error.status)
@@ -153,6 +174,15 @@ bool receive(int from, void *bytes, size_t size)
     return true;
 }
 
+bool frame_is_sane(const shape_frame &frame)
+{
+    for (int i = 0; i < 12; i++)
+        if (!std::isfinite(frame.m[i / 4][i % 4]))
+            return false;
+    shape_frame inverse;
+    return shape_frame_invert(&frame, &inverse);
+}
+
 // Even the reader is not trusted further than necessary: its memory may be damaged.
 bool is_sane(const shape_grid &g, size_t max_bytes)
 {
@@ -160,8 +190,24 @@ bool is_sane(const shape_grid &g, size_t max_bytes)
         if (g.points[a] < 2 || g.points[a] > SHAPE_GRID_MAX_SIDE ||
             g.bricks[a] != (g.points[a] - 1 + SHAPE_GRID_BRICK - 1) / SHAPE_GRID_BRICK)
             return false;
+    if (!(g.most > 0) || !std::isfinite(g.most))
+        return false;
     return cells_of(g) <= max_bytes / sizeof *g.table && g.brick_count >= 1 &&
            g.brick_count <= max_bytes / (SHAPE_GRID_BRICK_POINTS * sizeof *g.values) + 1;
+}
+
+bool values_are_sane(const shape_grid &grid)
+{
+    for (size_t i = 0; i < grid.brick_count; i++) {
+        const float *values = grid.values + i * SHAPE_GRID_BRICK_POINTS, low = grid.low[i],
+                    high = grid.high[i];
+        if (!(low >= 0 && low <= high && high <= grid.most))
+            return false;
+        for (int k = 0; k < SHAPE_GRID_BRICK_POINTS; k++)
+            if (!(values[k] >= low && values[k] <= high))
+                return false;
+    }
+    return true;
 }
 
 // A channel of the colour has the points of its density.
@@ -201,7 +247,7 @@ bool receive_grid(int from, const shape_grid &head, shape_grid *&made)
     for (size_t i = 0; i < cells; i++)
         if (grid->table[i] >= bricks)
             return false;
-    return true;
+    return values_are_sane(*grid);
 }
 
 shape_status damaged(const char *path, shape_error *error)
@@ -221,7 +267,8 @@ shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_con
     if (message.error.status)
         return shape_error_set(error, message.error.status, "%s: %s", path, message.error.text);
     shape_grid *grid = nullptr;
-    bool good = is_sane(message.grid, max_bytes) && receive_grid(from, message.grid, grid);
+    bool good = frame_is_sane(message.contents.frame) && is_sane(message.grid, max_bytes) &&
+                receive_grid(from, message.grid, grid);
     for (int c = 0; c < 3 && good && grid->coloured; c++)
         good = !message.grid.colour[c] ||
                (is_channel(message, c, max_bytes) && receive_grid(from, message.colour[c], grid->colour[c]));
@@ -229,14 +276,19 @@ shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_con
         shape_grid_release(grid);
         return damaged(path, error);
     }
-    *contents = message.contents;
+    unsigned char level_set; // which may hold what no bool does
+    std::memcpy(&level_set, &message.contents.level_set, 1);
+    std::memcpy(contents->name, message.contents.name, SHAPE_NAME_MAX);
     contents->name[SHAPE_NAME_MAX] = 0;
+    contents->frame = message.contents.frame;
+    contents->level_set = level_set == 1;
     contents->grid = grid;
     return SHAPE_OK;
 }
 
-shape_status read_apart(const char *path, const char *shown, const shape_vdb_read_options *options,
-                        shape_vdb_contents *contents, shape_error *error)
+shape_status read_apart(const char *path, size_t file_bytes, const char *shown,
+                        const shape_vdb_read_options *options, shape_vdb_contents *contents,
+                        shape_error *error)
 {
     int ends[2];
     if (pipe(ends))
@@ -252,14 +304,20 @@ shape_status read_apart(const char *path, const char *shown, const shape_vdb_rea
     }
     if (!reader) {
         close(ends[0]);
-        be_the_reader(path, *options, ends[1]);
+        be_the_reader(path, file_bytes, *options, ends[1]);
     }
     close(ends[1]);
     shape_status status = collect(shown, ends[0], options->max_bytes, contents, error);
     close(ends[0]); // a reader that still writes ends by it
-    int how;
+    int how = 0;
     while (waitpid(reader, &how, 0) < 0 && errno == EINTR) {
     }
+    if (status && WIFSIGNALED(how) && WTERMSIG(how) == SIGXCPU)
+        return shape_error_set(
+            error, SHAPE_ERROR_LIMIT,
+            "%s: reading it takes more than %llu s of processor time (damaged, or use "
+            "--max-memory, which allows more)",
+            shown, static_cast<unsigned long long>(allowed_seconds(file_bytes, options->max_bytes)));
     return status;
 }
 
@@ -315,7 +373,7 @@ extern "C" shape_status shape_vdb_read(const char *path, const shape_vdb_read_op
         return shape_error_set(error, SHAPE_ERROR_IO, "%s: cannot read it", shown);
     shape_status status = check_header(shown, first, size, error);
     if (!status)
-        status = read_apart(path, shown, options, contents, error);
+        status = read_apart(path, size_t(end), shown, options, contents, error);
     contents->file_bytes = size_t(end);
     return status;
 }

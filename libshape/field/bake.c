@@ -22,7 +22,7 @@ float shape_bake_voxel(const shape_volume_cloud *cloud, float wanted, size_t mos
     for (int round = 0; round < 200; round++, voxel *= 1.05f) {
         double count = 1;
         for (int axis = 0; axis < 3; axis++)
-            count *= ceil((&size.x)[axis] / voxel) + 2 * BRICK;
+            count *= ceil((double)((&size.x)[axis] / voxel)) + 2 * BRICK;
         if (count <= (double)most)
             break;
     }

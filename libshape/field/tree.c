@@ -113,7 +113,7 @@ static shape_status build(leaf *leaves, leaf *spare, size_t count, shape_tree *t
         task t = stack[--depth];
         shape_tree_node *node = &tree->nodes[tree->count];
         shape_box box = shape_box_empty();
-        for (size_t i = 0; i < t.count; i++)
+        for (size_t i = 0; i < t.count; i++) /* NOLINTNEXTLINE: the caller fills all `count` of them */
             box = shape_box_join(box, leaves[t.begin + i].box);
         node->min = box.min, node->max = box.max;
         node->skip = (float)(tree->count + 2 * t.count - 1);

@@ -205,7 +205,7 @@ shape_status shape_voxels_bounds(const shape_volume *volume, int cloud, bool z_u
     const shape_voxel_lattice metres = {.edge = 1, .z_up = z_up};
     *any = false;
     for (size_t i = 0; i < volume->cloud_count; i++) {
-        voxel_forms forms;
+        voxel_forms forms = {0};
         double low[3], high[3];
         if ((cloud >= 0 && i != (size_t)cloud) || !shape_primitives_count(volume->clouds[i].list))
             continue;

@@ -15,6 +15,7 @@ typedef struct exr_stream {
     const unsigned char *bytes; /* reading */
     size_t size;
     image_buffer out; /* writing */
+    bool no_memory;   /* which the core may call an error of the stream or the file */
     char text[200];   /* the core's own first word on what failed */
 } exr_stream;
 
@@ -47,6 +48,7 @@ static int64_t stream_write(exr_const_context_t context, void *data, const void 
 {
     exr_stream *stream = data;
     if (image_buffer_write(&stream->out, offset, buffer, size)) {
+        stream->no_memory = true;
         on_error(context, EXR_ERR_OUT_OF_MEMORY, "not enough memory");
         return -1;
     }
@@ -56,12 +58,20 @@ static int64_t stream_write(exr_const_context_t context, void *data, const void 
 static void keep_text(exr_const_context_t context, exr_result_t result, const char *text)
 {
     void *data = NULL;
-    (void)result;
     if (exr_get_user_data(context, &data) || !data)
         return;
     exr_stream *stream = data;
+    stream->no_memory = stream->no_memory || result == EXR_ERR_OUT_OF_MEMORY;
     if (!stream->text[0])
         snprintf(stream->text, sizeof stream->text, "%s", text);
+}
+
+/* A context that is written stays locked while it tells an error, and asking it for anything would wait for ever. */
+static void keep_silent(exr_const_context_t context, exr_result_t result, const char *text)
+{
+    (void)context;
+    (void)result;
+    (void)text;
 }
 
 static exr_context_initializer_t stream_initializer(exr_stream *stream)
@@ -197,6 +207,7 @@ shape_status image_exr_encode(const shape_image *image, const shape_image_option
 {
     exr_stream stream = {0};
     exr_context_initializer_t start = stream_initializer(&stream);
+    start.error_handler_fn = keep_silent;
     exr_context_t context;
     exr_result_t result = exr_start_write(&context, "memory", EXR_WRITE_FILE_DIRECTLY, &start);
     if (!result) {
@@ -207,10 +218,11 @@ shape_status image_exr_encode(const shape_image *image, const shape_image_option
     }
     if (result) {
         free(stream.out.bytes);
-        return shape_error_set(error,
-                               result == EXR_ERR_OUT_OF_MEMORY ? SHAPE_ERROR_MEMORY : SHAPE_ERROR_ARGUMENT,
+        if (stream.no_memory || result == EXR_ERR_OUT_OF_MEMORY)
+            return shape_error_memory(error);
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
                                "cannot write EXR: %s (change the text's key, or make the picture smaller)",
-                               stream.text[0] ? stream.text : exr_get_default_error_message(result));
+                               exr_get_default_error_message(result));
     }
     *bytes = stream.out.bytes;
     *size = stream.out.size;
@@ -370,6 +382,8 @@ static shape_status read_image(exr_reader *reader, shape_error *error)
     if (status)
         return status;
     exr_result_t result = read_pixels(reader);
+    if (result && (reader->stream.no_memory || result == EXR_ERR_OUT_OF_MEMORY))
+        return shape_error_memory(error);
     if (result)
         return shape_error_set(error, SHAPE_ERROR_FORMAT, "damaged EXR: %s (copy the file again)",
                                reader->stream.text[0] ? reader->stream.text
@@ -386,7 +400,10 @@ shape_status image_exr_decode(const unsigned char *bytes, size_t size, shape_ima
 {
     exr_reader reader = {.stream = {.bytes = bytes, .size = size}};
     exr_context_initializer_t start = stream_initializer(&reader.stream);
-    if (exr_start_read(&reader.context, "memory", &start))
+    exr_result_t result = exr_start_read(&reader.context, "memory", &start);
+    if (result && (reader.stream.no_memory || result == EXR_ERR_OUT_OF_MEMORY))
+        return shape_error_memory(error);
+    if (result)
         return shape_error_set(error, SHAPE_ERROR_FORMAT, "damaged EXR header: %s (copy the file again)",
                                reader.stream.text[0] ? reader.stream.text : "it cannot be read");
     shape_status status = read_image(&reader, error);

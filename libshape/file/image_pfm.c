@@ -65,7 +65,7 @@ static void next_word(const unsigned char *bytes, size_t size, size_t *at, char 
 static int word_number(const char *word)
 {
     size_t length = strlen(word);
-    return length <= 6 && strspn(word, "0123456789") == length ? atoi(word) : 0;
+    return length <= 6 && strspn(word, "0123456789") == length ? (int)strtol(word, NULL, 10) : 0;
 }
 
 /* A number from 1e-30 to 1e30 in size, or 0. */

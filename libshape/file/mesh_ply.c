@@ -229,7 +229,7 @@ static shape_status place(const mesh_text *text, const ply_header *header, shape
 static shape_status read_list(mesh_text *text, const ply_header *header, const ply_property *property,
                               mesh_builder *builder, shape_error *error)
 {
-    double length, value;
+    double length = 0, value = 0;
     shape_status status = read_value(text, header, property->count_type, &length, error);
     if (!status && !(length >= 0 && length <= UINT32_MAX && length == floor(length)))
         return place(text, header,

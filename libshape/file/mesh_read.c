@@ -88,7 +88,7 @@ static shape_status cut_polygons(const mesh_builder *builder, shape_mesh *mesh, 
     for (size_t i = 0; i < builder->polygon_count; start = builder->polygon_ends[i++])
         if (builder->polygon_ends[i] - start > largest)
             largest = builder->polygon_ends[i] - start;
-    double *scratch = malloc(3 * largest * sizeof *scratch);
+    double *scratch = malloc((3 * largest + 1) * sizeof *scratch);
     if (!scratch)
         return shape_error_memory(error);
     uint32_t *to = mesh->indices;

@@ -67,7 +67,7 @@ static shape_status read_facet(mesh_text *text, mesh_builder *builder, shape_err
     mesh_text_next_line(text);
     if (!take(text, "outer", "OUTER") || !take(text, "loop", "LOOP"))
         return mesh_text_error(text, error, "\"outer loop\" is missing (is the file cut off?)");
-    shape_dvec3 corner[3];
+    shape_dvec3 corner[3] = {{0, 0, 0}};
     for (int i = 0; i < 3; i++) {
         if (!take(text, "vertex", "VERTEX"))
             return mesh_text_error(text, error, "\"vertex\" is missing (is the file cut off?)");

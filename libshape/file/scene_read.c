@@ -65,17 +65,20 @@ static shape_status check_limits(scene_reader *r, const char *text, size_t size)
     return SHAPE_OK;
 }
 
-static json_t *parse(scene_reader *r, const void *bytes, size_t size)
+static shape_status parse(scene_reader *r, const void *bytes, size_t size, json_t **root)
 {
     json_error_t at;
-    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &at);
-    if (!root)
-        shape_error_set(r->error, SHAPE_ERROR_FORMAT, "%s:%d:%d: no good JSON: %s", r->name,
-                        at.line > 0 ? at.line : 1, at.column > 0 ? at.column : 1, at.text);
-    for (char *c = r->error->text; !root && *c; c++)
+    *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &at);
+    if (*root)
+        return SHAPE_OK;
+    if (json_error_code(&at) == json_error_out_of_memory || !at.text[0]) /* jansson says no more of that */
+        return shape_error_memory(r->error);
+    shape_error_set(r->error, SHAPE_ERROR_FORMAT, "%s:%d:%d: no good JSON: %s", r->name,
+                    at.line > 0 ? at.line : 1, at.column > 0 ? at.column : 1, at.text);
+    for (char *c = r->error->text; *c; c++)
         if ((unsigned char)*c < 0x20 || (unsigned char)*c == 0x7f)
             *c = '?'; /* JSON's own message quotes the bytes */
-    return root;
+    return SHAPE_ERROR_FORMAT;
 }
 
 shape_status shape_scene_decode(const void *bytes, size_t size, const char *name, shape_scene **scene,
@@ -86,9 +89,10 @@ shape_status shape_scene_decode(const void *bytes, size_t size, const char *name
     shape_status status = check_limits(&r, bytes, size);
     if (status)
         return status;
-    json_t *root = parse(&r, bytes, size);
-    if (!root)
-        return SHAPE_ERROR_FORMAT;
+    json_t *root;
+    status = parse(&r, bytes, size, &root);
+    if (status)
+        return status;
     shape_scene *made = shape_scene_create(error);
     status = made ? read_scene(&r, root, made) : SHAPE_ERROR_MEMORY;
     json_decref(root);

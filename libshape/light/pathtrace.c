@@ -74,6 +74,11 @@ shape_status shape_pathtrace_check(const shape_pathtrace_options *options, shape
     if (!(options->sun_angle >= 0 && options->sun_angle <= 90))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "sun_angle %g: must be from 0 to 90 degrees",
                                options->sun_angle);
+    if (options->samples_before < 0 || options->samples_before > options->samples ||
+        (options->samples_before && !options->pixels))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                               "samples_before %d: must be from 0 to samples, %d, with their pixels",
+                               options->samples_before, options->samples);
     return shape_lamp_check(&options->lamp, error);
 }
 
@@ -128,17 +133,12 @@ void shape_pathtrace_radiance(const shape_tracer *tracer, const shape_light *lig
 
 /* --- pictures --- */
 
-/* Mean and sum of squared deviations of a pixel's samples (Welford 1962). */
-typedef struct pixel_sums {
-    double mean[3], squares[3];
-} pixel_sums;
-
 typedef struct canvas {
     const path_scene *scene;
     const shape_view *view;
     shape_camera camera;
     uint64_t seed;
-    pixel_sums *pixels;
+    shape_pathtrace_pixel *pixels;
     int *row_samples; /* how many each row has */
 } canvas;
 
@@ -168,7 +168,7 @@ static void trace_row(const canvas *picture, int y, int samples)
     int before = picture->row_samples[y];
     for (int x = 0; x < picture->view->width; x++) {
         uint64_t index = (uint64_t)y * (uint64_t)picture->view->width + (uint64_t)x;
-        pixel_sums *pixel = &picture->pixels[index];
+        shape_pathtrace_pixel *pixel = &picture->pixels[index];
         shape_random random = shape_random_seed(shape_hash(picture->seed) ^ index, 0);
         double shift[3] = {track_unit(&random), track_unit(&random), track_unit(&random)}, rgb[3];
         for (int i = before; i < before + samples; i++) {
@@ -196,7 +196,7 @@ static shape_status work_on_row(void *context, int y)
     return SHAPE_OK;
 }
 
-static double pixel_variance(const pixel_sums *pixel, int channel, int samples)
+static double pixel_variance(const shape_pathtrace_pixel *pixel, int channel, int samples)
 {
     return samples > 1 ? pixel->squares[channel] / samples / (samples - 1) : 0;
 }
@@ -211,7 +211,7 @@ static double estimate_error(const canvas *picture)
             return INFINITY;
         for (size_t x = 0; x < width; x++)
             for (int c = 0; c < 3; c++) {
-                const pixel_sums *pixel = &picture->pixels[y * width + x];
+                const shape_pathtrace_pixel *pixel = &picture->pixels[y * width + x];
                 row += pixel_variance(pixel, c, picture->row_samples[y]) /
                        (pixel->mean[c] * pixel->mean[c] + 0.01);
             }
@@ -226,7 +226,7 @@ static void write_out(const canvas *picture, float *radiance, float *variance, s
     for (size_t y = 0; y < height; y++)
         for (size_t x = 0; x < width; x++)
             for (size_t c = 0; c < 3; c++) {
-                const pixel_sums *pixel = &picture->pixels[y * width + x];
+                const shape_pathtrace_pixel *pixel = &picture->pixels[y * width + x];
                 radiance[3 * (y * width + x) + c] = (float)pixel->mean[c];
                 result->mean[c] += pixel->mean[c] / (double)(width * height);
                 if (variance)
@@ -235,12 +235,26 @@ static void write_out(const canvas *picture, float *radiance, float *variance, s
             }
 }
 
+/* Samples of the next pass. Looks at the noise come after every PASS_SAMPLES, wherever the work began. */
+static int next_pass(const shape_pathtrace_options *options, int done)
+{
+    int left = options->samples - done;
+    int most = options->noise > 0 || options->keep ? PASS_SAMPLES - done % PASS_SAMPLES : LONG_PASS;
+    return left < most ? left : most;
+}
+
+static bool quiet_enough(const canvas *picture, const shape_pathtrace_options *options, int done)
+{
+    return options->noise > 0 && done > 0 && done % PASS_SAMPLES == 0 &&
+           estimate_error(picture) <= options->noise;
+}
+
 static void trace_picture(const canvas *picture, const shape_pathtrace_options *options,
                           shape_pathtrace_result *result)
 {
-    while (result->samples < options->samples && !result->cancelled) {
-        int left = options->samples - result->samples, most = options->noise > 0 ? PASS_SAMPLES : LONG_PASS;
-        int samples = left < most ? left : most;
+    result->samples = options->samples_before;
+    while (result->samples < options->samples && !quiet_enough(picture, options, result->samples)) {
+        int samples = next_pass(options, result->samples);
         rows_progress progress = {options->progress, options->progress_context,
                                   (double)result->samples / options->samples,
                                   (double)(result->samples + samples) / options->samples};
@@ -249,8 +263,10 @@ static void trace_picture(const canvas *picture, const shape_pathtrace_options *
         if (result->cancelled)
             break;
         result->samples += samples;
-        if (options->noise > 0 && estimate_error(picture) <= options->noise)
+        if (options->keep && !options->keep(options->keep_context, result->samples)) {
+            result->cancelled = true;
             break;
+        }
     }
     result->rel_error = estimate_error(picture);
 }
@@ -268,17 +284,21 @@ shape_status shape_pathtrace_render(const shape_tracer *tracer, const shape_view
     if (status)
         return status;
     path_scene s = path_scene_make(&tracer->grid, light, options);
-    canvas picture = {&s, view, shape_view_camera(view), options->seed, NULL, NULL};
-    picture.pixels = calloc((size_t)view->width * (size_t)view->height, sizeof *picture.pixels);
+    canvas picture = {&s, view, shape_view_camera(view), options->seed, options->pixels, NULL};
+    if (!options->pixels)
+        picture.pixels = calloc((size_t)view->width * (size_t)view->height, sizeof *picture.pixels);
     picture.row_samples = calloc((size_t)view->height, sizeof *picture.row_samples);
     memset(result, 0, sizeof *result);
     if (picture.pixels && picture.row_samples) {
+        for (int y = 0; y < view->height; y++)
+            picture.row_samples[y] = options->samples_before;
         trace_picture(&picture, options, result);
         write_out(&picture, radiance, variance, result);
     } else {
         status = shape_error_memory(error);
     }
-    free(picture.pixels);
+    if (!options->pixels)
+        free(picture.pixels);
     free(picture.row_samples);
     return status;
 }

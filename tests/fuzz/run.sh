@@ -1,13 +1,20 @@
 #!/bin/sh
-# Builds the fuzzers and runs each for SECONDS (60 where not given): sh tests/fuzz/run.sh SECONDS [NAME]...
+# Builds the fuzzers and runs each for SECONDS (60 where not given), or for so many inputs:
+#   sh tests/fuzz/run.sh [SECONDS] [NAME]...
+#   sh tests/fuzz/run.sh --runs N [NAME]...
 # What they find worth keeping goes to build/fuzz/corpus/NAME; tests/fuzz/corpus/NAME are the seeds. A crash leaves its
 # input in build/fuzz/crashes and ends with exit code 1.
 set -eu
 cd "$(dirname "$0")/../.."
-seconds=${1:-60}
-case $seconds in
+limit=-max_total_time
+if [ "${1:-}" = --runs ]; then
+    limit=-runs
+    shift
+fi
+many=${1:-60}
+case $many in
 '' | *[!0-9]*)
-    echo "run.sh: \"$seconds\" is no number of seconds" >&2
+    echo "run.sh: \"$many\" is no number of seconds or runs" >&2
     exit 2
     ;;
 esac
@@ -32,11 +39,25 @@ for name in "$@"; do
     mkdir -p "$found"
     [ -d "$seeds" ] || seeds=
     options=
-    [ ! -f "tests/fuzz/$name.dict" ] || options=-dict=tests/fuzz/$name.dict
-    # Ten seconds for an input of 64 KiB are a hang, half a gigabyte at once is a hole.
+    timeout=10
+    malloc=512
+    length=65536
+    case $name in
+    cmdline)
+        options=-detect_leaks=0 # a run ends in the middle of main
+        length=2048
+        ;;
+    vdb) # the reader has limits of its own
+        seeds="$seeds tests/frozen/vdb"
+        timeout=60
+        malloc=0
+        ;;
+    esac
+    [ ! -f "tests/fuzz/$name.dict" ] || options="$options -dict=tests/fuzz/$name.dict"
+    # Ten seconds for an input are a hang, half a gigabyte at once is a hole.
     # shellcheck disable=SC2086
-    "$build/fuzz/fuzz_$name" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 \
-        -max_len=65536 -artifact_prefix="$build/crashes/$name-" -print_final_stats=1 $options \
+    "$build/fuzz/fuzz_$name" "$limit=$many" -timeout=$timeout -rss_limit_mb=1024 -malloc_limit_mb=$malloc \
+        -max_len=$length -artifact_prefix="$build/crashes/$name-" -print_final_stats=1 $options \
         "$found" $seeds > "$build/fuzz_$name.log" 2>&1 || failed="$failed $name"
     grep -E 'stat::number_of_executed_units|ERROR|SUMMARY' "$build/fuzz_$name.log" | sed "s/^/$name: /"
 done

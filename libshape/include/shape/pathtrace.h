@@ -51,6 +51,14 @@ bool shape_lamp_shines(const shape_lamp *lamp);
 /* SHAPE_ERROR_ARGUMENT where a number is negative or not finite. */
 shape_status shape_lamp_check(const shape_lamp *lamp, shape_error *error);
 
+/* Mean and sum of squared deviations of a pixel's samples (Welford 1962), red, green, blue. */
+typedef struct shape_pathtrace_pixel {
+    double mean[3], squares[3];
+} shape_pathtrace_pixel;
+
+/* Called by the thread that renders whenever every pixel has the same number of samples; false ends the work there. */
+typedef bool (*shape_pathtrace_keep)(void *context, int samples);
+
 typedef struct shape_pathtrace_options {
     int samples; /* paths a pixel, 1 to 2^20; default 64. With `noise`: the most */
     double
@@ -61,6 +69,12 @@ typedef struct shape_pathtrace_options {
     shape_lamp lamp;  /* default none */
     const shape_opaque *
         opaque; /* finished; ends rays, scatters them as matt surfaces do, throws and catches shadows; default NULL */
+    shape_pathtrace_pixel *
+        pixels; /* width * height sums, the caller's: zeros, or those of an earlier rendering of the same picture, which
+                      is gone on with; they end as the sums of this one. Default NULL: none are handed out */
+    int samples_before;        /* paths that each of *pixels has, 0 to `samples`; default 0 */
+    shape_pathtrace_keep keep; /* a moment to keep *pixels; default none */
+    void *keep_context;
     shape_progress progress; /* default none */
     void *progress_context;
 } shape_pathtrace_options;
@@ -78,7 +92,8 @@ typedef struct shape_pathtrace_result {
 } shape_pathtrace_result;
 
 /* Renders. radiance gets width * height RGB triples from the upper left; variance (may be NULL) the estimated variance
- * of each of these means. The same options give the same picture for any number of threads. Errors:
+ * of each of these means. The same options give the same picture for any number of threads, and also where the work was
+ * ended by `keep` and gone on with from what it kept. Errors:
  * SHAPE_ERROR_ARGUMENT from the checks of view, light and options; memory. Cancelled: SHAPE_OK, with what there is. */
 shape_status shape_pathtrace_render(const shape_tracer *tracer, const shape_view *view,
                                     const shape_light *light, const shape_pathtrace_options *options,

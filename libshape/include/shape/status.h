@@ -38,6 +38,12 @@ shape_status shape_error_set(shape_error *error, shape_status status, const char
 /* The usual line for a failed allocation. Returns SHAPE_ERROR_MEMORY. */
 shape_status shape_error_memory(shape_error *error);
 
+/* clang's analyser does not look into the other file, and would take either for a success. */
+#ifdef __clang_analyzer__
+#define shape_error_set(error, status, ...) (shape_error_set(error, status, __VA_ARGS__), (status))
+#define shape_error_memory(error) (shape_error_memory(error), SHAPE_ERROR_MEMORY)
+#endif
+
 /* Of long work, called now and then by one thread. done is the share of the work, 0 to 1; false ends the work. */
 typedef bool (*shape_progress)(void *context, double done);
 

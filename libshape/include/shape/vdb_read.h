@@ -32,7 +32,8 @@ shape_vdb_read_options shape_vdb_read_defaults(void);
  * becomes a fog volume: 0 at its surface to 1 inside its band. Inactive voxels count as 0, and so do negative ones. A colour
  * may have a transform of its own; it is looked at where the density has its voxels, and where none is active by its
  * neighbours, and then by its background.
- * OpenVDB does not stand up to damaged files, so it runs in a process of its own, whose memory is limited. Errors, each
+ * OpenVDB does not stand up to damaged files, so it runs in a process of its own, whose memory is limited, and whose time:
+ * 10 s of processor time, 1 s a MiB of the file and 1 s for every 64 MiB of max_bytes. Errors, each
  * with the file's name: SHAPE_ERROR_IO, SHAPE_ERROR_FORMAT (no OpenVDB file, a version or a compression that is not known,
  * no or several scalar grids, nothing in it, NaN, damaged), SHAPE_ERROR_LIMIT. Not to be called from two threads at once. */
 shape_status shape_vdb_read(const char *path, const shape_vdb_read_options *options,

@@ -1,0 +1,89 @@
+# Memory that runs out, program by program: the n-th allocation of a typical run fails, whoever asks for it, libraries too.
+# The program ends with exit code 0 (it could do without) or 1 and says so; no crash, no hang, no part of a file, nothing
+# left. $1: programs, $2: source folder, $3: how many n a program are tried, spread evenly (12); "all": every one.
+set -eu
+bin=$(cd "$1" && pwd)
+source=$(cd "$2" && pwd)
+tries=${3:-12}
+tmp=$(mktemp -d)
+trap 'rm -rf "$tmp"' EXIT
+cd "$tmp"
+export OMP_NUM_THREADS=1
+
+fail() {
+    echo "cli_memory: $1" >&2
+    [ ! -s err ] || head -n 5 err | sed 's/^/    /' >&2
+    exit 1
+}
+cc -shared -fPIC -O1 -o failing.so "$source/tests/failing_malloc.c" -ldl || fail "the preloaded library does not build"
+# Sanitizers have an allocator of their own, below which none can be put.
+if grep -q __asan_init "$bin/neph-gauss"; then
+    echo "cli_memory: left out, the programs have a sanitizer's allocator"
+    exit 0
+fi
+
+mkdir in
+"$bin/neph-gauss" -q --count 6 -o in/c.neph
+"$bin/neph-render" -q in/c.neph --size 8x6 --spp 2 -o in/a.exr
+"$bin/neph-render" -q in/c.neph --size 8x6 --spp 2 -o in/a.png
+"$bin/neph-vdb" -q in/c.neph --resolution 16 -o in/c.vdb
+"$bin/neph-gauss" -q --count 6 -o in/d.neph --save-scene in/s.json
+printf 'axiom X\niterations 3\nX -> X + Y\nY -> X & Y\n' > in/g.lsys
+
+# check NAME: how a run ended, by $code, out/ and err.
+check() {
+    case $code in
+    0) ;;
+    1)
+        [ -s err ] || fail "$1: ended with 1 and without a word"
+        # What is written before the last file may be there, whole.
+        left=$(ls out | grep -Evx 'first[.].*|sums' || true)
+        [ -z "$left" ] || fail "$1: failed, and left $left"
+        ;;
+    *) fail "$1: exit code $code" ;;
+    esac
+}
+
+# each NAME COMMAND...: the command, which writes into out/, with each allocation failing once.
+each() {
+    name=$1
+    shift
+    rm -rf out
+    mkdir out
+    code=0
+    NEPHELE_COUNT=$tmp/count LD_PRELOAD=$tmp/failing.so "$@" > /dev/null 2> err || code=$?
+    [ "$code" = 0 ] || fail "$name: fails with all memory there"
+    count=$(cat count)
+    [ "$count" -ge 10 ] || fail "$name: asks for memory $count times only"
+    step=1
+    [ "$tries" = all ] || step=$(((count + tries - 1) / tries))
+    n=0
+    failures=0
+    while [ "$n" -lt "$count" ]; do
+        rm -rf out
+        mkdir out
+        code=0
+        NEPHELE_FAIL=$n LD_PRELOAD=$tmp/failing.so timeout 60 "$@" > /dev/null 2> err || code=$?
+        check "$name, allocation $n of $count"
+        failures=$((failures + code))
+        n=$((n + step))
+    done
+    [ "$failures" -gt 0 ] || fail "$name: no allocation of $count made it fail"
+    echo "$name: $count allocations, every $step tried, $failures made it end with 1"
+}
+
+each gauss "$bin/neph-gauss" --count 6 -o out/first.neph --save-scene out/s.json
+each lsys "$bin/neph-lsys" in/g.lsys -o out/x.neph
+each meta "$bin/neph-meta" -o out/x.neph
+each layer "$bin/neph-layer" -o out/x.neph
+each edit "$bin/neph-edit" in/c.neph --scale 2,2,2 --prune -o out/x.neph
+each info "$bin/neph-info" --json in/c.neph -o out/x.json
+each mesh "$bin/neph-mesh" "$source/examples/meshes/ngon.obj" --faces 20 -o out/x.neph
+each gltf "$bin/neph-mesh" "$source/examples/meshes/ngon.gltf" -o out/x.neph
+each scene "$bin/neph-info" in/s.json -o out/x.txt
+each reference "$bin/neph-render" in/c.neph --size 8x6 --spp 2 --denoise -o out/x.exr --resume out/sums
+each march "$bin/neph-render" in/c.neph --size 8x6 --method march --light-resolution 4 -o out/x.png
+each compare "$bin/neph-render" --compare in/a.exr in/a.png -o out/first.pfm
+each volume "$bin/neph-render" in/c.vdb --size 8x6 --spp 1 -o out/x.png
+each vdb "$bin/neph-vdb" in/c.neph --resolution 16 -o out/x.vdb
+each fit "$bin/neph-vdb" in/c.vdb --primitives 2 --cells 16 -o out/first.neph
