@@ -36,7 +36,7 @@ tutorial/4 | step 4
 tutorial/5 | step 5
 tutorial/6 | step 6
 tutorial/7 | step 7
-! tutorial/blender | blend castle "--eye 0,0,60 --target 0,2.4,0 --fov 16 --sun 55,40 --sky 0.1,0.2,0.4 --size 400x200 --samples 32"
+! tutorial/blender | blend castle "--eye 0,0,60 --target 0,2.4,0 --fov 16 --sun 55,40 --sky 0.1,0.2,0.4 --size 320x160 --samples 96"
 ! viewer-methods | methods cumulus mesh
 ! chart | neph-chart -q --size 320x180 --runs 3 examples/scenes/bench/cumulus.json -o "$work/chart" && cp "$work/chart/chart.png" "$out"
 ! convergence | build/bench/tests/bench/bench_convergence >"$work/convergence.csv" && gnuplot -c docs/convergence.gp "$work/convergence.csv" "$out"
