@@ -17,7 +17,7 @@ in_blender() {
 }
 
 # Far broader along x than along z, and off the origin: a turned or mirrored volume is noticed.
-"$programs/neph-gauss" --seed 5 --sigma 4,1,1.5 --at 3,20,-8 --model uniform --extinction 1 -q -o "$tmp/cloud.neph"
+"$programs/neph-gauss" --seed 5 --sigma 4,1,1.5 --at 3,20,-8 --model uniform --extinction 1 --albedo 0.984375 --g 0.5 -q -o "$tmp/cloud.neph"
 "$programs/neph-info" --json "$tmp/cloud.neph" > "$tmp/info.json"
 for options in "" "--half" "--grids profile,light"; do
     # Word by word.
@@ -31,6 +31,7 @@ info, found = (json.load(open(f"{sys.argv[1]}/{name}.json")) for name in ("info"
 low, high = info["clouds"][0]["bounds"]
 voxel = max(b - a for a, b in zip(low, high)) / 96
 assert ["density", "FLOAT"] in found["grids"]
+assert (found["extinction"], found["albedo"], found["g"]) == (1, 0.984375, 0.5), found
 for is_, wanted in zip(found["min"], (low[0], -high[2], low[1])):
     assert abs(is_ - wanted) < 1.5 * voxel, (is_, wanted)
 # Blender's box is that of the leaves, of eight voxels each.
@@ -41,7 +42,7 @@ done
 
 view="--eye 3,22,14 --target 3,21,-8 --fov 40 --sun 20,40 --size 96x54"
 # shellcheck disable=SC2086
-in_blender "$tmp/cloud.vdb" --extinction 1 $view --sky 0.1,0.1,0.1 --samples 32 --render "$tmp/theirs.exr" \
+in_blender "$tmp/cloud.vdb" $view --sky 0.1,0.1,0.1 --samples 32 --render "$tmp/theirs.exr" \
     > "$tmp/said" 2>&1 || fail "Cycles failed: $(tail -n 5 "$tmp/said")"
 # shellcheck disable=SC2086
 "$programs/neph-render" -q "$tmp/cloud.neph" $view --sky 0.1,0.1,0.1 --spp 64 -o "$tmp/ours.exr"

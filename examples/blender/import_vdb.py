@@ -2,15 +2,17 @@
 
     blender --python examples/blender/import_vdb.py -- cloud.vdb                       to look at and work on
     blender -b --python examples/blender/import_vdb.py -- cloud.vdb --render x.exr     a picture by Cycles
+    blender -b --python examples/blender/import_vdb.py -- cloud.vdb --render x.png     the same, to look at
     blender -b --python examples/blender/import_vdb.py -- cloud.vdb --check            what Blender finds, as JSON
 
-Options have neph-render's names, axes (y up) and units. Extinction, albedo and g are read from the file's metadata where
-Python's openvdb module is installed (Debian: python3-openvdb), else they are given here.
+Options have neph-render's names, axes (y up) and units. Extinction, albedo and g are those noted in the file, unless they are
+given here.
 """
 import argparse
 import json
 import math
 import re
+import struct
 import sys
 
 import bpy
@@ -42,7 +44,7 @@ def arguments():
     parser.add_argument("--filter", choices=["blackman-harris", "box"], default="blackman-harris",
                         help="of a pixel: Cycles' own, or that of neph-render [blackman-harris]")
     parser.add_argument("--threads", type=int, default=0, help="[all]")
-    parser.add_argument("--render", metavar="FILE.exr", help="render to linear OpenEXR")
+    parser.add_argument("--render", metavar="FILE", help="render to linear OpenEXR, or to a .png (sRGB, no tone curve)")
     parser.add_argument("--check", action="store_true", help="print grids and bounds as JSON")
     return parser.parse_args(words)
 
@@ -52,12 +54,20 @@ def upright(v):
     return Vector((v[0], -v[2], v[1]))
 
 
-def metadata(path):
-    try:
-        import pyopenvdb
-        return pyopenvdb.readMetadata(path, "density").metadata
-    except Exception:
-        return {}
+def notes(path):
+    """What neph-vdb noted of the medium. In a .vdb a note is its name, its type and its value, each behind its length."""
+    with open(path, "rb") as file:
+        content = file.read()
+    found = {}
+    for name in ("extinction", "albedo", "g"):
+        head = struct.pack("<I", len("neph_" + name)) + b"neph_" + name.encode()
+        at = content.find(head)
+        for kind, form in ((b"float", "<f"), (b"double", "<d")):
+            head_of_kind = struct.pack("<I", len(kind)) + kind + struct.pack("<I", struct.calcsize(form))
+            start = at + len(head)
+            if at >= 0 and content.startswith(head_of_kind, start):
+                found[name] = struct.unpack_from(form, content, start + len(head_of_kind))[0]
+    return found
 
 
 def import_volume(path):
@@ -144,9 +154,10 @@ def set_up(scene, wanted):
         cycles.pixel_filter_type = "BOX"
     scene.render.resolution_x, scene.render.resolution_y = (int(n) for n in wanted.size.split("x"))
     scene.render.resolution_percentage = 100
-    scene.view_settings.view_transform = "Raw"
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    scene.render.image_settings.color_depth = "32"
+    to_look_at = (wanted.render or "").endswith(".png")
+    scene.view_settings.view_transform = "Standard" if to_look_at else "Raw"
+    scene.render.image_settings.file_format = "PNG" if to_look_at else "OPEN_EXR"
+    scene.render.image_settings.color_depth = "8" if to_look_at else "32"
     if wanted.threads:
         scene.render.threads_mode, scene.render.threads = "FIXED", wanted.threads
 
@@ -155,13 +166,13 @@ def main():
     wanted = arguments()
     volume = import_volume(wanted.volume)
     low, high = bounds(volume)
+    known = notes(wanted.volume)
+    choose = lambda name, otherwise: getattr(wanted, name) if getattr(wanted, name) is not None else known.get(name, otherwise)
+    chosen = {name: choose(name, otherwise) for name, otherwise in (("extinction", 2), ("albedo", 1), ("g", 0.85))}
     if wanted.check:
-        print(json.dumps({"grids": [[g.name, g.data_type] for g in volume.data.grids], "min": low, "max": high}))
+        print(json.dumps({"grids": [[g.name, g.data_type] for g in volume.data.grids], "min": low, "max": high, **chosen}))
         return
-    known = metadata(wanted.volume)
-    choose = lambda given, name, otherwise: given if given is not None else known.get(name, otherwise)
-    medium(volume, choose(wanted.extinction, "neph_extinction", 2), choose(wanted.albedo, "neph_albedo", 1),
-           choose(wanted.g, "neph_g", 0.85))
+    medium(volume, **chosen)
     middle = (Vector(low) + Vector(high)) / 2
     size = (Vector(high) - Vector(low)).length
     target = upright(wanted.target) if wanted.target else middle

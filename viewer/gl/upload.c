@@ -39,25 +39,29 @@ GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, 
     return texture;
 }
 
+/* A volume of voxels alone has no noise; its shaders are given a cell of nothing, which they never ask for. */
 static void upload_noise(gl_scene *scene, const shape_noise *noise)
 {
-    enum { N = SHAPE_NOISE_SIZE };
+    static const uint16_t nothing[8];
+    const uint16_t *cells = noise ? noise->cells : nothing;
+    const int side = noise ? SHAPE_NOISE_SIZE : 1;
+    const size_t count = (size_t)side * (size_t)side * (size_t)side;
     glGenTextures(1, &scene->noise_cells);
     glBindTexture(GL_TEXTURE_3D, scene->noise_cells);
     glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32UI, N, N, N, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, noise->cells);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32UI, side, side, side, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, cells);
     /* The plain lattice, filtered by the hardware: the paper's way. */
-    float *plain = malloc(sizeof(float) * N * N * N);
+    float *plain = malloc(sizeof(float) * count);
     if (!plain)
         return;
-    for (size_t i = 0; i < (size_t)N * N * N; i++)
-        plain[i] = (float)noise->cells[8 * i] * (1.0f / 65535.0f);
+    for (size_t i = 0; i < count; i++)
+        plain[i] = (float)cells[8 * i] * (1.0f / 65535.0f);
     glGenTextures(1, &scene->noise_linear);
     glBindTexture(GL_TEXTURE_3D, scene->noise_linear);
     glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, N, N, N, 0, GL_RED, GL_FLOAT, plain);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_R32F, side, side, side, 0, GL_RED, GL_FLOAT, plain);
     free(plain);
 }
 
