@@ -14,16 +14,11 @@
 namespace
 {
 
-bool is_scalar(const openvdb::GridBase &grid)
-{
-    return grid.isType<openvdb::FloatGrid>() || grid.isType<openvdb::DoubleGrid>();
-}
-
 std::string list_names(const openvdb::GridPtrVec &grids, bool scalar)
 {
     std::string names;
     for (const openvdb::GridBase::Ptr &grid : grids)
-        if (!scalar || is_scalar(*grid))
+        if (!scalar || vdb_has_channel(*grid))
             names += (names.empty() ? "" : ", ") + grid->getName() +
                      (scalar ? "" : " (" + grid->valueType() + ")");
     return names.size() > 300 ? names.substr(0, 300) + " ..." : names;
@@ -37,7 +32,7 @@ openvdb::GridBase::Ptr choose(const openvdb::GridPtrVec &grids, const char *want
     size_t scalar = 0;
     for (const openvdb::GridBase::Ptr &grid : grids) {
         bool colour = std::find(colours.begin(), colours.end(), grid->getName()) != colours.end();
-        if (!is_scalar(*grid) || (wanted ? grid->getName() != wanted : colour))
+        if (!vdb_has_channel(*grid) || (wanted ? grid->getName() != wanted : colour))
             continue;
         scalar++;
         if (!chosen)
