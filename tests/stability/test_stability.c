@@ -145,7 +145,7 @@ static void print_sweep_head(void)
            "through white clouds in a white furnace bring exactly 1; the march sees a sky of 1 through black "
            "clouds as 0 to 1 with every\n"
            "rule, and a source of 1 as at most 1 with the default rule; the light `grid` brings 1 within 10 "
-           "% in a white furnace where it\n"
+           "%% in a white furnace where it\n"
            "claims to: one cloud without meshes, mean cosine -0.5 to 0.86, extinction times the longest side "
            "up to 300. Its flux is\n"
            "told, not checked. Metaballs and details are given few primitives, for the time's sake; the "
