@@ -77,10 +77,11 @@ typedef struct shape_march_options {
                       2 tan(fov / 2) / height */
     double light_step; /* of the march to the sun [m]; 0: twice the step */
     int resolution;    /* of grids of light, cells along a cloud's longest side, 2 to 256; default 48 */
-    const int *resolutions; /* one a cloud, in place of `resolution`; 0: the cloud is not drawn and has no grid, and only
+    const int *
+        resolutions; /* one a cloud, in place of `resolution`; 0: the cloud is not drawn and has no grid, and only
                                throws shadows. Read by shape_marcher_create alone. NULL (default): all alike */
-    int samples;       /* rays a pixel, 1 to 4096; default 1 */
-    double powder;     /* k of the powder laws, 0 to 1000; default 2 */
+    int samples;     /* rays a pixel, 1 to 4096; default 1 */
+    double powder; /* k of the powder laws, 0 to 1000; default 2 */
     double shade; /* multiplies depths to the sun, 0 to 1 (sigma' of Páleník 2016 section 3.3); default 1 */
     double forward;     /* share of scattering that Harris' light keeps, 0 to 1; default 0.5 */
     float emission[3];  /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
