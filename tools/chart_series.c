@@ -280,8 +280,12 @@ static void read_csv(sheet *s)
 
 static void print_panel(FILE *file, const sheet *s, const series *one)
 {
-    bool named = one->labels[0] != NULL, logarithmic = !named && one != &all_series[COVERAGE];
+    bool named = one->labels[0] != NULL,
+         logarithmic = !named && one != &all_series[COVERAGE] && one != &all_series[RESOLUTION];
     double most = 0;
+    int names = 0;
+    while (names < POINTS && one->labels[names])
+        names++;
     fprintf(file, "$d << EOD\n");
     for (int i = 0; i < s->count; i++)
         if (s->points[i].series == one && s->points[i].runs) {
@@ -297,9 +301,9 @@ static void print_panel(FILE *file, const sheet *s, const series *one)
         fprintf(file, "set logscale x %d\n", one == &all_series[LATTICE] ? 4 : 2);
     if (named)
         fprintf(file,
-                "set xtics rotate by -25 font \",9\"\nset xrange [0.4:*<%d.6]\n"
+                "set xtics rotate by -25 font \",9\"\nset xrange [0.4:%d.6]\n"
                 "plot $d using 1:2:(0.6):xtic(3) with boxes fs solid 0.7 lc rgb \"#4477aa\" notitle\n",
-                POINTS);
+                names);
     else
         fprintf(file,
                 "set xtics norotate\nplot $d using 1:2 with linespoints lc rgb \"#4477aa\" pt 7 notitle\n");
