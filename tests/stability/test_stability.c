@@ -124,7 +124,7 @@ static void print_head(void)
            "not be true) or ours outside; the page is printed from the same rows:\n\n"
            "    cmake --preset release && cmake --build build/release\n"
            "    build/release/tests/stability/test_stability --markdown > docs/stability.md\n"
-           "    build/release/tests/stability/sweep 100000 >> docs/stability.md\n");
+           "    build/release/tests/stability/sweep 1600 >> docs/stability.md\n");
 }
 
 static void print_sweep_head(void)
