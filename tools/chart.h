@@ -2,6 +2,8 @@
 #ifndef NEPHELE_CHART_H
 #define NEPHELE_CHART_H
 
+#include <stdio.h>
+
 #include "shape/march.h"
 #include "shape/set.h"
 #include "shape/view.h"
@@ -158,7 +160,17 @@ double chart_relmse_least(const chart_scene *scene);
 void chart_results_read(chart_plan *plan);
 void chart_results_write(const chart_plan *plan);
 
+/* --- chart_series.c --- */
+
+/* Measures and draws --appendix: series.csv, series.svg, series.png. */
+void chart_series(const chart_plan *plan, const chart_scene *scene);
+
 /* --- chart_write.c: chart.svg and chart.png by gnuplot; chart_report.c: report.md --- */
+
+/* Draws by a script that `print` writes for that terminal, into a file of the folder. Ends the program where it fails. */
+void chart_draw_script(const chart_plan *plan, const char *terminal, const char *name,
+                       void (*print)(FILE *file, const void *context, const char *terminal),
+                       const void *context);
 
 /* Ends the program where gnuplot cannot be run. */
 void chart_need_gnuplot(void);

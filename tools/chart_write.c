@@ -171,8 +171,9 @@ static void print_panel(FILE *file, const chart_scene *scene, chart_kind kind)
     fprintf(file, ", $label using 1:2:3 with labels right offset -0.8,-0.35 font \",8\" notitle\n");
 }
 
-static void print_script(FILE *file, const chart_plan *plan, const char *terminal)
+static void print_script(FILE *file, const void *context, const char *terminal)
 {
+    const chart_plan *plan = context;
     fprintf(file, "set encoding utf8\nset terminal %s noenhanced font \"sans,10\" size %d,%d\n", terminal,
             2 * PANEL_WIDTH, (int)plan->scene_count * PANEL_HEIGHT);
     fprintf(file, "set logscale xy\nset xlabel \"milliseconds\" offset 0,0.6\nset ylabel \"error, percent\"\n"
@@ -185,14 +186,16 @@ static void print_script(FILE *file, const chart_plan *plan, const char *termina
     fprintf(file, "unset multiplot\n");
 }
 
-static void draw(const chart_plan *plan, const char *terminal, const char *name)
+void chart_draw_script(const chart_plan *plan, const char *terminal, const char *name,
+                       void (*print)(FILE *file, const void *context, const char *terminal),
+                       const void *context)
 {
     shape_error error;
     char complaint[256];
     FILE *script = tmpfile(), *out = tmpfile();
     if (!script || !out)
         cli_fail("no temporary file: %s", strerror(errno));
-    print_script(script, plan, terminal);
+    print(script, context, terminal);
     if (!run_gnuplot(script, out, complaint))
         cli_fail("gnuplot could not draw %s: %s", name, complaint);
     long size = fseek(out, 0, SEEK_END) ? -1 : ftell(out);
@@ -211,6 +214,6 @@ static void draw(const chart_plan *plan, const char *terminal, const char *name)
 
 void chart_draw(const chart_plan *plan)
 {
-    draw(plan, "svg", "chart.svg");
-    draw(plan, "pngcairo", "chart.png");
+    chart_draw_script(plan, "svg", "chart.svg", print_script, plan);
+    chart_draw_script(plan, "pngcairo", "chart.png", print_script, plan);
 }

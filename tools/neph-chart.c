@@ -18,13 +18,16 @@
 
 enum { SCENES_MOST = 32, QUICK_SECONDS = 48, QUICK_WIDTH = 128 };
 
-static bool quick, runs_given, size_given;
+static bool quick, appendix, runs_given, size_given;
 static int64_t runs = 5, size[2];
 static double noise = 0.02;
 
 static const cli_option chart_options[] = {
     {"quick", 0, CLI_FLAG, &quick, 0, 0, NULL,
      "few settings, pictures 128 pixels wide, a rough reference: within a minute [off]", NULL, true},
+    {"appendix", 0, CLI_FLAG, &appendix, 0, 0, NULL,
+     "of one scene, frame times against one setting at a time instead: series.csv, .svg, .png [off]", NULL,
+     true},
     {"size", 0, CLI_SIZE, size, 1, 4096, "WxH", "of the pictures, pixels [the scene's, 640x360]", &size_given,
      true},
     {"runs", 0, CLI_INTEGER, &runs, 1, CHART_RUNS, "N", "times that each is measured [5; --quick 3]",
@@ -45,7 +48,8 @@ static const cli_program program = {
         "against the path tracer, and writes results.csv, chart.svg, chart.png and report.md into the\n"
         "folder -o. Started again with the same words, it goes on where it was broken off.",
     .examples = "  neph-chart --quick cloud.neph -o out\n"
-                "  neph-chart --size 320x180 examples/scenes/bench/cumulus.json -o out\n",
+                "  neph-chart --size 320x180 examples/scenes/bench/cumulus.json -o out\n"
+                "  neph-chart --appendix --size 160x90 --runs 3 examples/scenes/bench/cumulus.json -o out\n",
     .min_arguments = 1,
     .max_arguments = SCENES_MOST,
     .groups = groups,
@@ -189,6 +193,8 @@ int main(int argc, char **argv)
     cli_parse(&program, argc, argv, &common);
     if (!common.output_given || !strcmp(common.output, "-"))
         cli_wrong("results are several files (name a folder with -o)");
+    if (appendix && (quick || common.argument_count != 1))
+        cli_wrong("--appendix takes one scene, and no --quick (--size and --runs say how long it takes)");
     static chart_scene scenes[SCENES_MOST];
     chart_plan plan = {.folder = common.output,
                        .scenes = scenes,
@@ -204,6 +210,12 @@ int main(int argc, char **argv)
     check_names(&plan);
     chart_need_gnuplot();
     make_folder(plan.folder);
+    if (appendix) {
+        chart_series(&plan, &scenes[0]);
+        shape_set_destroy(scenes[0].set);
+        free(scenes[0].rows);
+        return cli_finish(&common);
+    }
     chart_results_read(&plan);
     chart_measure(&plan);
     chart_results_write(&plan);

@@ -73,6 +73,21 @@ static shape_budget_sight look(const shape_volume_cloud *cloud, const shape_came
     return sight;
 }
 
+/* A cloud between the pixels' rays: by the ray through its middle. */
+static shape_budget_sight look_at_speck(const shape_volume_cloud *cloud, const shape_camera *camera, window w,
+                                        const shape_opaque *opaque)
+{
+    shape_dvec3 middle = {0.5 * ((double)cloud->box.min.x + (double)cloud->box.max.x),
+                          0.5 * ((double)cloud->box.min.y + (double)cloud->box.max.y),
+                          0.5 * ((double)cloud->box.min.z + (double)cloud->box.max.z)};
+    shape_dvec3 way = shape_dvec3_sub(shape_frame_point(&cloud->frame, middle), camera->origin);
+    bool behind = false;
+    if (w.x0 > w.x1)
+        return SHAPE_BUDGET_OUTSIDE;
+    meets(cloud, camera->origin, shape_dvec3_normalize(way), opaque, &behind);
+    return behind ? SHAPE_BUDGET_BEHIND : SHAPE_BUDGET_SEEN;
+}
+
 /* The diameter of the sphere around a box, in pixels; infinite where the eye is near. */
 double shape_budget_pixels(const shape_view *view, shape_dvec3 low, shape_dvec3 high)
 {
@@ -109,8 +124,10 @@ void shape_budget_sights(const shape_volume *volume, const shape_view *view, con
         if (shape_box_is_empty(cloud->box))
             continue;
         shape_frame_box(&cloud->frame, cloud->box, &low, &high);
-        sights[i] = look(cloud, &camera, view, find_window(&camera, view, low, high), opaque);
+        window w = find_window(&camera, view, low, high);
         double across = shape_budget_pixels(view, low, high);
+        sights[i] =
+            across < 1 ? look_at_speck(cloud, &camera, w, opaque) : look(cloud, &camera, view, w, opaque);
         if (sights[i] != SHAPE_BUDGET_SEEN || !(across < 1))
             continue;
         shape_dvec3 way = shape_dvec3_sub(shape_dvec3_scale(shape_dvec3_add(low, high), 0.5), view->eye);
