@@ -22,8 +22,9 @@ struct shape_marcher {
     float upper[3], lower[3]; /* mean radiance of the sky's halves */
     shape_march_options options;
     double step, light_step;
-    double deep;           /* the optical depth of options.cutoff */
-    const shape_grid *voxels; /* the grid of a volume that is one grid, seen along the ray itself; else NULL */
+    double deep; /* the optical depth of options.cutoff */
+    const shape_grid
+        *voxels;           /* the grid of a volume that is one grid, seen along the ray itself; else NULL */
     shape_dvec3 low, high; /* the world box around all clouds */
     march_cloud *clouds;
     uint16_t *blue; /* SHAPE_JITTER_BLUE */

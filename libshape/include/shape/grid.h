@@ -28,7 +28,8 @@ typedef struct shape_grid {
     uint32_t *table;   /* [bricks z][bricks y][bricks x]: which brick of `values`; 0: the empty one */
     float *values;     /* [brick_count][9][9][9], x fastest; brick 0 is all 0 */
     float *low, *high; /* the range of each brick's values */
-    uint64_t *filled;  /* a bit for each part of 2^3 cells of a brick, x fastest, then y: whether it holds anything */
+    uint64_t *
+        filled; /* a bit for each part of 2^3 cells of a brick, x fastest, then y: whether it holds anything */
     size_t brick_count;
     float most;     /* the largest value */
     float gain;     /* density is the sample times this, >= 0 and finite; 1 unless the caller sets it */
