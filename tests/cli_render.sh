@@ -120,6 +120,7 @@ differs silver --light single --silver
 differs lock --light single --lock 3
 differs power --light single --alpha-power 3
 differs peel --light single --alpha-peel 0.9
+differs cutoff --light single --cutoff 0.09
 
 # The methods of 2018.
 for method in paper paper-ndt; do

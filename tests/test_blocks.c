@@ -161,6 +161,37 @@ static void free_paths_are_exact(void **state)
     }
 }
 
+/* Rounding of places far off is many blocks; a gain of 0 leaves none at all. No ray leaves the table, which the address
+ * sanitizer would tell, and what is empty is never met. */
+static void far_and_empty_are_safe(void **state)
+{
+    (void)state;
+    shape_error error;
+    shape_random random = shape_random_seed(8, 0);
+    for (int k = 0; k < 2; k++) {
+        shape_set *set;
+        shape_volume *volume = ragged_volume(&set, 2);
+        volume->clouds[0].list->grid->gain = k ? 0 : 1;
+        block_grid b;
+        must(block_grid_build(&b, &volume->clouds[0], shape_dvec3_make(0, 0, 0), &error), &error);
+        int met = 0;
+        for (int i = 0; i < 20000; i++) {
+            shape_vec3 to = draw_direction(&random);
+            double far = pow(10, shape_random_range(&random, 0, 20)), t;
+            double d[3] = {(double)to.x, (double)to.y, (double)to.z}, p[3] = {2, 1.6, 1.8};
+            for (int a = 0; a < 3; a++)
+                p[a] -= far * d[a];
+            met += block_collide(&b, p, d, INFINITY, 0.01, &random, &t);
+            double weight = block_transmittance(&b, p, d, INFINITY, &random);
+            assert_true(weight >= 0 && weight < 10);
+        }
+        assert_true(k ? met == 0 : met > 1000);
+        block_grid_free(&b);
+        shape_volume_destroy(volume);
+        shape_set_destroy(set);
+    }
+}
+
 /* Against the exact integral: cell by cell the same, by steps of 1.5 voxels within 6 % of a smooth density's depth; and an
  * early end is one past what is enough. */
 static void way_has_the_integral(void **state)
@@ -274,9 +305,9 @@ static void threads_change_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(look_is_the_plain_one),    cmocka_unit_test(bounds_hold),
-        cmocka_unit_test(free_paths_are_exact),     cmocka_unit_test(way_has_the_integral),
-        cmocka_unit_test(march_is_the_general_one),
+        cmocka_unit_test(look_is_the_plain_one),  cmocka_unit_test(bounds_hold),
+        cmocka_unit_test(far_and_empty_are_safe), cmocka_unit_test(free_paths_are_exact),
+        cmocka_unit_test(way_has_the_integral),   cmocka_unit_test(march_is_the_general_one),
 #ifdef _OPENMP
         cmocka_unit_test(threads_change_nothing),
 #endif

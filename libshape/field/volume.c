@@ -124,12 +124,10 @@ static shape_status prepare(const shape_set *set, shape_volume *volume, size_t i
     return status;
 }
 
-/* The lattice takes ten milliseconds to make, which a volume of voxels, read from a file, has no use for. */
-static bool has_noise(const shape_set *set, bool bare)
+static bool has_noise(const shape_set *set)
 {
     for (size_t i = 0; i < set->cloud_count; i++)
-        if ((set->clouds[i].field.model != SHAPE_MODEL_GRID &&
-             !(bare && set->clouds[i].field.model == SHAPE_MODEL_UNIFORM)) ||
+        if (set->clouds[i].field.model != SHAPE_MODEL_UNIFORM ||
             shape_detail_is_on(&set->clouds[i].field.detail))
             return true;
     return false;
@@ -144,7 +142,7 @@ static shape_status create(const shape_set *set, bool bare, shape_volume **volum
     made->trees = calloc(2 * set->cloud_count + 1, sizeof *made->trees);
     made->grown = calloc(set->cloud_count + 1, sizeof *made->grown);
     shape_status status = made->clouds && made->trees && made->grown ? SHAPE_OK : shape_error_memory(error);
-    if (!status && has_noise(set, bare))
+    if (!status && !(bare && !has_noise(set)))
         status = shape_noise_create(&made->noise, error);
     for (size_t i = 0; i < set->cloud_count && !status; i++) {
         status = prepare(set, made, i, bare, error);

@@ -106,6 +106,9 @@ static void find_box(block_grid *b)
                     b->high[a] = track_max(b->high[a], at[a] * b->edge);
                 }
             }
+    for (int a = 0; a < 3; a++) /* nothing at all: no ray meets it */
+        if (!(b->low[a] < b->high[a]))
+            b->low[a] = b->high[a] = 0;
 }
 
 shape_status block_grid_build(block_grid *b, const shape_volume_cloud *cloud, shape_dvec3 origin,
@@ -150,6 +153,7 @@ typedef struct block_walk {
     double t, end, p[3], d[3], next[3], delta[3];
     const block_bound *at;
     ptrdiff_t step[3];
+    int left[3]; /* blocks before the border's end: from very far away, rounding can be many blocks */
 } block_walk;
 
 static bool walk_start(block_walk *w, const block_grid *b, const double p[3], const double d[3],
@@ -180,6 +184,7 @@ static bool walk_start(block_walk *w, const block_grid *b, const double p[3], co
         int last = b->n[a] - 3, at = (int)((w->p[a] + w->d[a] * w->t) * one);
         at = at < 0 ? 0 : at > last ? last : at;
         w->step[a] = w->d[a] < 0 ? -stride : stride;
+        w->left[a] = w->d[a] < 0 ? at + 1 : last + 1 - at;
         w->delta[a] = w->d[a] == 0 ? 0 : b->edge * fabs(inverse[a]);
         w->next[a] =
             w->d[a] == 0 ? INFINITY : ((at + (w->d[a] > 0)) * (double)b->edge - w->p[a]) * inverse[a];
@@ -202,12 +207,15 @@ static inline bool walk_next(block_walk *w, double exit)
     if (!(exit < w->end))
         return false;
     w->t = track_max(w->t, exit);
+    int least = 0;
     for (int a = 0; a < 3; a++) {
         bool here = w->next[a] <= exit;
+        w->left[a] -= here;
+        least = w->left[a] < least ? w->left[a] : least;
         w->next[a] += here ? w->delta[a] : 0;
         w->at += here ? w->step[a] : 0;
     }
-    return true;
+    return least >= 0;
 }
 
 static inline double extinction_at(const block_grid *b, const block_walk *w)

@@ -1,7 +1,7 @@
 # Voxels on the processor, ours against what people use, on one .vdb: neph-render --method reference against Cycles (time to
 # equal noise), and --method march against OpenVDB's vdb_render (time of a picture). The tables of docs/benchmarks.md.
 # $1: programs, $2: source; $3: size [640x360]; $4: samples a pixel of Cycles [8]; $5: turns of vdb_render and ours [3].
-# Needs Debian's blender, openvdb-tools (or libopenvdb-tools) and python3. Some five minutes on two idle cores.
+# Needs Debian's blender, libopenvdb-tools and python3. Some five minutes on two idle cores.
 set -eu
 programs=$(cd "$1" && pwd)
 script=$(cd "$2/examples/blender" && pwd)/import_vdb.py

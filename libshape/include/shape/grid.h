@@ -29,7 +29,7 @@ typedef struct shape_grid {
     float *values;     /* [brick_count][9][9][9], x fastest; brick 0 is all 0 */
     float *low, *high; /* the range of each brick's values */
     uint64_t *
-        filled; /* a bit for each of a brick's 4^3 parts of 2^3 cells, x fastest, then y: whether it holds anything */
+        filled; /* a bit for each part of 2^3 cells of a brick, x fastest, then y: whether it holds anything */
     size_t brick_count;
     float most;     /* the largest value */
     float gain;     /* density is the sample times this, >= 0 and finite; 1 unless the caller sets it */

@@ -87,8 +87,8 @@ typedef struct shape_march_options {
     float emission[3]; /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
     bool silver;       /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
     double lock;       /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
-    /* A ray ends where less than this share of what is behind gets through, and a way to the sun where less of the sun
-     * does; 1e-12 to 0.1; default 1e-8. */
+    /* A ray ends where less than this share of what is behind gets through, and a way to the sun through voxels where
+     * less of the sun does; 1e-12 to 0.1; default 1e-8. */
     double cutoff;
     double alpha_power; /* coverage is raised to it, 0.01 to 100 (alpha correction); default 1 */
     double alpha_peel;  /* pixels with less coverage show no cloud, 0 to 1; default 0 */
