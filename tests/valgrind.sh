@@ -34,7 +34,7 @@ run "$bin/neph-meta" -q -o m.neph
 run "$bin/neph-layer" -q -o y.neph
 run "$bin/neph-mesh" -q "$source/examples/meshes/ngon.obj" --faces 40 -o x.neph
 run "$bin/neph-mesh" -q "$source/examples/meshes/mirrored.glb" -o g.neph
-run "$bin/neph-edit" -q c.neph l.neph --rotate 10,20,30 --scale 2,1,1 --grow 1 --prune -o e.neph
+run "$bin/neph-edit" -q c.neph l.neph --rotate 10,20,30 --scale 2,1,1 --grow --prune -o e.neph
 run "$bin/neph-edit" -q l.neph --simplify 0.2 -o d.neph
 run "$bin/neph-info" --json s.json
 run "$bin/neph-info" --csv e.neph -o e.csv
