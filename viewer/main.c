@@ -20,7 +20,7 @@ static int64_t bench_frames, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
     day_given, decay_given, time_given;
-static double allowed_error, frame_range[2], fps = 25, moment_time, decay_range[2];
+static double allowed_error, split_share = 0.5, frame_range[2], fps = 25, moment_time, decay_range[2];
 static view_course course;
 
 static const cli_option view_options[] = {
@@ -35,6 +35,8 @@ static const cli_option view_options[] = {
      "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
      "[off]",
      &error_given, true},
+    {"split", 0, CLI_NUMBER, &split_share, 0, 1, "S",
+     "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
      "draw N frames on an orbit of half a degree a frame, print times as JSON", &bench_given, true},
     {"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
@@ -92,11 +94,12 @@ static const cli_group groups[] = {{"View", view_options},
 
 static const cli_program program = {
     .name = "neph-view",
-    .arguments = "IN",
+    .arguments = "IN [OTHER]",
     .about =
         "Shows a .neph, a grammar, a scene (docs/scene.md) or a volume (.vdb, raw) in a window, or writes "
         "pictures of it without "
-        "one.\n"
+        "one.\nA second file is shown beside it, right of a line that can be dragged, in the same light and "
+        "view.\n"
         "\"-\" reads standard input. --save-scene writes what the window shows when it is closed. A grammar\n"
         "is derived as neph-lsys does it, by --seed. The window watches the file and shows it anew when it "
         "is\n"
@@ -106,9 +109,10 @@ static const cli_program program = {
     .examples = "  neph-view castellanus.lsys\n"
                 "  neph-lsys castellanus.lsys | neph-view - --headless --size 1280x720 -o castellanus.png\n"
                 "  neph-view castellanus.neph --frames 0..99 --wind 1,0,0 --shear 0.02 -o frame.%04d.png\n"
+                "  neph-view before.neph after.neph\n"
                 "  neph-view castellanus.neph --bench 50\n",
     .min_arguments = 1,
-    .max_arguments = 1,
+    .max_arguments = 2,
     .groups = groups};
 
 static double now_ms(void)
@@ -226,6 +230,15 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     const shape_view view = job->view;
     const shape_light light = job->light;
     cli_check(shape_gl_context_create(&context, &error), &error);
+    if (job->other_set) {
+        unsigned char *bytes;
+        size_t size;
+        cli_check(view_encode_split(job, &view, &light, common->output, &bytes, &size, &error), &error);
+        cli_write(common, bytes, size, true);
+        free(bytes);
+        shape_gl_context_destroy(context);
+        return;
+    }
     if (error_given) {
         draw_within(job, &view, &light, common);
         shape_gl_context_destroy(context);
@@ -248,71 +261,15 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     shape_gl_context_destroy(context);
 }
 
-/* One line a mistake, then the end. */
-static void fail_lines(char *mistakes)
+/* Two files are two pictures of one moment. */
+static void check_second(const cli_common *common)
 {
-    for (char *line = strtok(mistakes, "\n"); line; line = strtok(NULL, "\n"))
-        cli_error("%s", line);
-    exit(CLI_FAILED);
-}
-
-static shape_set *read_source(const char *path, const view_generator *generator, view_contents *contents)
-{
-    shape_error error;
-    static char mistakes[16384];
-    if (view_source_read(path, generator, contents, mistakes, sizeof mistakes, &error))
-        fail_lines(mistakes);
-    return contents->set;
-}
-
-/* A volume that was read into input->set: like a scene, it is not watched. */
-static cli_input use_volume(view_job *job, view_contents *contents, cli_input *input)
-{
+    if (bench_given || frames_given || error_given || morph_path)
+        cli_wrong("\"%s\": --bench, --frames, --error and --morph take one file", common->arguments[1]);
     if (cli_save_wanted())
-        cli_fail("%s: a scene holds no volume (make primitives of it by neph-vdb first)", job->path);
-    input->volume = job->volume_file = true;
-    job->scene = true;
-    contents->used = job->generator;
-    return *input;
-}
-
-/* What is to be shown: a scene, a .neph, a grammar or a volume, told apart by what is in it. */
-static cli_input read_input(view_job *job, view_contents *contents)
-{
-    cli_input input = {.path = job->path};
-    const char *shown = strcmp(job->path, "-") ? job->path : "standard input";
-    unsigned char *bytes;
-    shape_error error;
-    static char mistakes[16384];
-    if (cli_is_volume(job->path)) {
-        input.set = cli_read_volume(job->path);
-        return use_volume(job, contents, &input);
-    }
-    cli_check(shape_file_read(job->path, 0x40000000, &bytes, &input.size, &error), &error);
-    if (cli_is_volume_bytes(bytes, input.size)) {
-        input.set = cli_read_volume_bytes(shown, bytes, input.size);
-        free(bytes);
-        return use_volume(job, contents, &input);
-    }
-    cli_refuse_volume_options();
-    if (shape_scene_is(bytes, input.size)) {
-        cli_check(shape_scene_decode(bytes, input.size, shown, &input.scene, &error), &error);
-        input.set = cli_scene_make(input.scene, job->path);
-        job->scene = true;
-        contents->used = job->generator;
-    } else {
-        if (view_source_decode(job->path, bytes, input.size, &job->generator, contents, mistakes,
-                               sizeof mistakes, &error))
-            fail_lines(mistakes);
-        input.set = contents->set;
-    }
-    free(bytes);
-    job->generator = contents->used;
-    job->generator.seed = job->seed;
-    job->grammar = contents->grammar;
-    if (job->grammar && cli_save_wanted())
-        cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
-    return input;
+        cli_wrong("--save-scene: a scene of two files to compare is no scene (open one of them)");
+    if (!strcmp(common->arguments[0], "-") && !strcmp(common->arguments[1], "-"))
+        cli_wrong("- - : standard input is one file");
 }
 
 /* A wrong command is told before the work, not after. */
@@ -341,6 +298,10 @@ static void check_command(const cli_common *common, view_frames *frames)
             cli_wrong("--%s needs --day", *name);
     if (cli_given("morph-time") && !morph_path)
         cli_wrong("--morph-time needs --morph");
+    if (common->argument_count > 1)
+        check_second(common);
+    else if (cli_given("split"))
+        cli_wrong("--split needs a second file to stand right of the line");
     if (samples_given && bench_given)
         cli_wrong("--samples: --bench draws moving views, of one sample each");
     if (morph_path && (cli_has_suffix(morph_path, ".json") || cli_is_volume(morph_path)))
@@ -380,6 +341,8 @@ static void plan(view_job *job, const cli_common *common)
     job->options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     job->samples = (int)samples;
     job->path = job->title = common->arguments[0];
+    job->other_path = common->argument_count > 1 ? common->arguments[1] : NULL;
+    job->divider = (float)split_share;
     cli_given_text(cli_volume_options, job->opening, sizeof job->opening);
     cli_given_text(cli_optics_options, job->opening, sizeof job->opening);
     cli_given_text(cli_scene_options + 1, job->opening, sizeof job->opening); /* --allow-outside */
@@ -399,6 +362,17 @@ static void plan(view_job *job, const cli_common *common)
     job->course = course;
 }
 
+static void take_opened(view_job *job, const view_opened *opened)
+{
+    job->set = opened->input.set;
+    job->scene = opened->scene || opened->volume;
+    job->volume_file = opened->volume;
+    job->grammar = opened->grammar;
+    job->generator = opened->used;
+    if (job->grammar && cli_save_wanted())
+        cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
+}
+
 int main(int argc, char **argv)
 {
     double started = now_ms();
@@ -408,22 +382,29 @@ int main(int argc, char **argv)
     shape_error error;
     view_frames frames = {0};
     view_job job = {0};
-    view_contents contents = {0}, other = {0};
+    shape_set *turned = NULL;
     shape_morph *morph = NULL;
     check_command(&common, &frames);
     plan(&job, &common);
     cli_save_check(&common);
-    cli_input input = read_input(&job, &contents);
-    job.set = input.set;
-    if (input.scene)
-        cli_picture_use_scene(input.scene);
+    view_opened opened = view_open(job.path, &job.generator), other = {0};
+    take_opened(&job, &opened);
+    if (common.argument_count > 1) {
+        other = view_open(common.arguments[1], &job.generator);
+        job.other_set = other.input.set;
+        job.other_watched = strcmp(job.other_path, "-") && !other.scene && !other.volume;
+    }
+    if (!opened.volume && !other.volume)
+        cli_refuse_volume_options();
+    if (opened.input.scene)
+        cli_picture_use_scene(opened.input.scene);
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     cli_picture_apply(job.set, &job.view, &job.light);
     memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
     if (morph_path) {
-        read_source(morph_path, &job.generator, &other);
-        cli_check(shape_morph_create(job.set, other.set, &morph, &error), &error);
+        turned = view_open_source(morph_path, &job.generator);
+        cli_check(shape_morph_create(job.set, turned, &morph, &error), &error);
         job.morph = morph;
     }
     if (frames_given) {
@@ -437,8 +418,9 @@ int main(int argc, char **argv)
     }
     view_job_free(&job);
     shape_morph_destroy(morph);
-    shape_set_destroy(other.set);
-    cli_picture_save_scene(&input, &job.view, &job.light);
-    cli_input_free(&input);
+    shape_set_destroy(turned);
+    cli_picture_save_scene(&opened.input, &job.view, &job.light);
+    cli_input_free(&opened.input);
+    cli_input_free(&other.input);
     return cli_finish(&common);
 }

@@ -18,7 +18,8 @@ struct panel_memory {
     bool all_clouds = true;
     int shot_size[2] = {0, 0}; // 0: as the window is
     bool shot_alpha = false;
-    ImVec4 covered[2] = {}; // by the panel and by the help: left, top, right, bottom
+    char other[VIEW_PATH_MAX] = ""; // as it is being typed
+    ImVec4 covered[2] = {};         // by the panel and by the help: left, top, right, bottom
 };
 panel_memory memory;
 
@@ -196,6 +197,22 @@ void draw_light(const view_panel_input &in)
         ImGui::ColorEdit3("radiance", s.sky_radiance, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
 }
 
+// Of a split picture: by which method, and of which file.
+void draw_right_half(const view_panel_input &in, view_panel_wish &wish, const char *methods)
+{
+    choose("right half", &in.state->other_method, methods);
+    bool entered = ImGui::InputTextWithHint("right file", "the same", memory.other, sizeof memory.other,
+                                            ImGuiInputTextFlags_EnterReturnsTrue);
+    if (!ImGui::IsItemActive() && !entered)
+        std::snprintf(memory.other, sizeof memory.other, "%s", in.other);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("a .neph or a grammar, then Enter; empty: the same file by another method");
+    if (!entered)
+        return;
+    wish.open_other = true;
+    std::snprintf(wish.other, sizeof wish.other, "%s", memory.other);
+}
+
 void draw_camera(const view_panel_input &in, view_panel_wish &wish)
 {
     if (!section("Camera and method", true))
@@ -205,7 +222,7 @@ void draw_camera(const view_panel_input &in, view_panel_wish &wish)
     choose("method", &s.method, methods);
     ImGui::Checkbox("split (X)", &s.split);
     if (s.split)
-        choose("right half", &s.other_method, methods);
+        draw_right_half(in, wish, methods);
     turn_group("Camera", in, 0);
     turn_group("Quality", in, 0);
     ImGui::InputScalarN("eye", ImGuiDataType_Double, s.eye, 3, nullptr, nullptr, "%.4g");
@@ -289,7 +306,7 @@ void draw_help(const ImVec2 &screen)
         {"Home", "first view"},
         {"+ -", "exposure"},
         {"Tab", "panel"},
-        {"X", "two methods, split; drag the line"},
+        {"X", "two methods or files, split; drag the line"},
         {"B, P", "boxes, primitives as wires"},
         {"T", "steps, then fetches a pixel as heat"},
         {"Space", "time runs, stops"},
@@ -357,6 +374,13 @@ void draw_wires(const view_panel_input &in, const ImVec2 &screen)
     view_wires_free(&wires);
 }
 
+// A path's last part.
+const char *bare(const char *path)
+{
+    const char *slash = std::strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 void draw_picture(const view_panel_input &in, const ImVec2 &screen)
 {
     ImDrawList *list = ImGui::GetBackgroundDrawList();
@@ -367,11 +391,18 @@ void draw_picture(const view_panel_input &in, const ImVec2 &screen)
     if (!in.state->split)
         return;
     static const char *const methods[] = {"default", "exact", "paper", "paper-ndt"};
-    float x = screen.x * in.state->divider;
+    const view_state &s = *in.state;
+    float x = screen.x * s.divider;
     list->AddLine(ImVec2(x, 0), ImVec2(x, screen.y), IM_COL32(255, 255, 255, 200), 2);
-    const char *left = methods[in.state->method];
-    list->AddText(ImVec2(x - 8 - ImGui::CalcTextSize(left).x, screen.y - 60), IM_COL32_WHITE, left);
-    list->AddText(ImVec2(x + 8, screen.y - 60), IM_COL32_WHITE, methods[in.state->other_method]);
+    char names[2][160];
+    const char *files[2] = {in.other[0] ? in.title : "", in.other};
+    const int chosen[2] = {s.method, s.other_method};
+    bool one_method = in.other[0] && s.method == s.other_method;
+    for (int i = 0; i < 2; i++)
+        std::snprintf(names[i], sizeof names[i], "%s%s%s", bare(files[i]),
+                      in.other[0] && !one_method ? ", " : "", one_method ? "" : methods[chosen[i]]);
+    list->AddText(ImVec2(x - 8 - ImGui::CalcTextSize(names[0]).x, screen.y - 60), IM_COL32_WHITE, names[0]);
+    list->AddText(ImVec2(x + 8, screen.y - 60), IM_COL32_WHITE, names[1]);
 }
 
 } // namespace

@@ -19,6 +19,7 @@ typedef struct view_panel_input {
     const view_state *base;                   /* what a value is put back to */
     unsigned texture;                         /* the picture; 0: none yet */
     const char *title, *doing, *error, *said; /* texts, empty where there is nothing to say */
+    const char *other;                        /* the file of the right half; empty: the same */
     int samples;                              /* drawn so far */
     double draw_ms, light_ms, bake_ms, volume_ms, read_ms;
     double steps, fetches; /* a pixel, of the picture */
@@ -33,6 +34,8 @@ typedef struct view_panel_wish {
     bool undo, redo, home, copy, generate, play;
     bool shoot, shoot_alpha;
     int shoot_size[2];
+    bool open_other;
+    char other[VIEW_PATH_MAX]; /* what to show in the right half; empty: the same file */
 } view_panel_wish;
 
 /* After the window's own callbacks have been set: ImGui calls them on. */

@@ -10,6 +10,8 @@
 extern "C" {
 #endif
 
+enum { VIEW_PATH_MAX = 4096 }; /* bytes of a file's path */
+
 /* How a grammar is derived. What `own_` names is taken from here, the rest from the file. */
 typedef struct view_generator {
     bool own_iterations, own_angle;

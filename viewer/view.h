@@ -2,7 +2,7 @@
 #ifndef NEPHELE_VIEW_H
 #define NEPHELE_VIEW_H
 
-#include "cli.h"
+#include "cli_scene.h"
 #include "moment.h"
 #include "shape/image.h"
 #include "shape_gl.h"
@@ -10,16 +10,20 @@
 
 /* What the command line asked for. */
 typedef struct view_job {
-    const shape_set *set;     /* at rest */
-    const shape_morph *morph; /* NULL: none */
-    shape_set *moved;         /* as it is at the time that is drawn */
-    shape_volume *volume;     /* of moved */
-    shape_view view;          /* at time 0 */
-    shape_light light;        /* at time 0 */
+    const shape_set *set;       /* at rest */
+    const shape_set *other_set; /* of a second file, right of the divider; NULL */
+    float divider;              /* a share of the width */
+    const shape_morph *morph;   /* NULL: none */
+    shape_set *moved;           /* as it is at the time that is drawn */
+    shape_volume *volume;       /* of moved */
+    shape_view view;            /* at time 0 */
+    shape_light light;          /* at time 0 */
     view_course course;
     double time; /* of a picture without a window [s] */
     shape_gl_options options;
     const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
+    const char *other_path;                /* NULL */
+    bool other_watched;                    /* it is a file that can be watched */
     view_generator generator;              /* of a grammar */
     char opening[1024];                    /* options that belong to the file, as they were given */
     bool grammar, scene, alpha;
@@ -29,6 +33,19 @@ typedef struct view_job {
     uint64_t seed; /* as given */
     double sun[2]; /* azimuth and height, degrees, as given */
 } view_job;
+
+/* input.c: what the command line opens. */
+typedef struct view_opened {
+    cli_input input;     /* freed by cli_input_free */
+    view_generator used; /* of a grammar; else as given */
+    bool grammar, scene;
+    bool volume; /* a .vdb or raw floats */
+} view_opened;
+
+/* Reads a scene, a .neph, a grammar or a volume; mistakes end the program. */
+view_opened view_open(const char *path, const view_generator *generator);
+/* A .neph or a grammar alone. The caller destroys the set. */
+shape_set *view_open_source(const char *path, const view_generator *generator);
 
 /* window.c: opens the window and stays until it is closed. Errors: SHAPE_ERROR_SYSTEM where there is no display. */
 shape_status view_window(view_job *job, shape_error *error);
@@ -44,6 +61,11 @@ shape_status view_read_image(shape_gl_renderer *renderer, int width, int height,
 /* Encodes what the renderer has drawn, in the format that the output's name asks for. */
 shape_status view_encode(shape_gl_renderer *renderer, const shape_view *view, bool alpha, const char *output,
                          unsigned char **bytes, size_t *size, shape_error *error);
+
+/* The same of two files: the job's clouds left of the divider, its other ones, where they are at the job's time, right of
+ * it. Draws both; an OpenGL context is current. */
+shape_status view_encode_split(const view_job *job, const shape_view *view, const shape_light *light,
+                               const char *output, unsigned char **bytes, size_t *size, shape_error *error);
 
 /* within.c: a picture to an allowed error. */
 typedef struct view_quality {

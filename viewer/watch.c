@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LOOK_MS = 20, REST_MS = 60, SILENT_MS = 1000, MAX_PATH = 4096 };
+enum { LOOK_MS = 20, REST_MS = 60, SILENT_MS = 1000 };
 
 /* What tells one version of a file from another. */
 typedef struct file_mark {
@@ -25,7 +25,7 @@ typedef struct file_mark {
 } file_mark;
 
 struct view_watch {
-    char path[MAX_PATH], folder[MAX_PATH];
+    char path[VIEW_PATH_MAX], folder[VIEW_PATH_MAX];
     const char *name; /* within path */
     void (*wake)(void);
     pthread_t thread;
