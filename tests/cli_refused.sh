@@ -36,7 +36,6 @@ for options in "--spp 3" "--size 4x4" "--stats" "--rule simpson" "--density-gain
 done
 [ ! -e z.json ] || fail "--compare --save-scene wrote a scene"
 refused 2 "there is no lamp" "$bin/neph-render" c.neph $small --lamp-intensity 1,1,1 -o x.pfm
-refused 2 "holds no meshes" "$bin/neph-render" c.neph $small --mesh "$source/examples/meshes/ngon.obj" --save-scene z.json -o x.pfm
 for options in "--paper-lod" "--fps 3" "--day-speed 2" "--latitude 3" "--declination 3" "--morph-time 2"; do
     # shellcheck disable=SC2086
     refused 2 "belongs\|needs" "$bin/neph-view" c.neph $small --headless --samples 1 $options -o x.pfm

@@ -63,6 +63,48 @@ cmp -s c.exr d.exr || fail "a scene saved from a scene gives another picture"
 "$bin/neph-view" -q gauss.json $small --headless --light-grid 8 --samples 1 --exposure 1 -o a.png --save-scene view.json
 "$bin/neph-view" -q view.json --headless --light-grid 8 --samples 1 -o b.png
 cmp -s a.png b.png || fail "neph-view --save-scene: the scene gives another picture"
+# Meshes: --mesh becomes a mesh of the saved scene, beside those that it has, and gives the same bytes by either method;
+# neph-view keeps them, and all that do not show them say so.
+printf 'OFF\n3 1 0\n-30 -30 -2\n30 -30 -2\n0 40 -2\n3 0 1 2\n' >in/floor.off
+printf 'v -3 -1 6\nv 3 -1 6\nv 0 5 6\nf 1 2 3\n' >wall.obj
+small="$small --eye 2,6,40 --target 0,1,0"
+for method in "march --light single" "reference --spp 2"; do
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q gauss.json $small --method $method --mesh in/floor.off --mesh-colour 0.1,0.7,0.3 -o a.exr \
+        --save-scene in/floor.json 2>/dev/null
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q in/floor.json --allow-outside --method $method --mesh wall.obj -o b.exr --save-scene both.json
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q in/floor.json --allow-outside --method $method -o c.exr
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q both.json --method $method -o d.exr
+    # shellcheck disable=SC2086
+    "$bin/neph-render" -q gauss.json $small --method $method -o e.exr
+    cmp -s a.exr c.exr || fail "--mesh --save-scene, $method: the scene gives another picture"
+    cmp -s b.exr d.exr || fail "--mesh beside a scene's, $method: the saved scene gives another picture"
+    cmp -s a.exr e.exr && fail "$method: the scene's mesh is not in the picture"
+    cmp -s a.exr b.exr && fail "$method: --mesh is not in the picture of a scene with meshes"
+done
+"$bin/neph-info" --json both.json | grep -q '"meshes": \[{"file": "in/floor.off"}, {"file": "wall.obj"}\]' ||
+    fail "neph-info does not name the meshes: $("$bin/neph-info" --json both.json)"
+# Placed: the wall of the file, turned, moved and in centimetres, is the wall that stands there.
+printf 'v 500 -100 -300\nv 500 -100 300\nv 500 500 0\nf 1 2 3\n' >turned.obj
+sed 's|"file": "wall.obj"|"file": "turned.obj", "unit": 0.01, "rotate": [0, -90, 0], "translate": [0, 0, 1], "albedo": 0.5|' both.json \
+    >placed.json
+"$bin/neph-render" -q placed.json --method march --light single -o a.exr
+"$bin/neph-render" -q both.json --method march --light single -o b.exr
+"$bin/neph-render" --compare a.exr b.exr --tolerance 1e-6 >/dev/null || fail "a mesh does not stand where its place says"
+note="note: meshes of the scene are"
+"$bin/neph-view" both.json --headless --light-grid 8 --samples 1 -o a.png --save-scene view.json 2>err
+grep -q "neph-view: $note not drawn (neph-render draws them)" err || fail "neph-view says nothing of meshes"
+grep -q '"file": "in/floor.off"' view.json || fail "neph-view --save-scene loses the meshes"
+"$bin/neph-vdb" both.json --resolution 8 -o x.vdb 2>err
+grep -q "$note left out" err || fail "neph-vdb says nothing of meshes"
+"$bin/neph-edit" both.json -o x.neph 2>err
+grep -q "$note left out" err || fail "neph-edit says nothing of meshes"
+"$bin/neph-render" both.json --method paper -o x.exr 2>err
+grep -q "$note not shown" err || fail "--method paper says nothing of meshes"
+rm x.vdb x.neph x.exr
 refused "leaves the scene's folder" "$bin/neph-render" -q in/shown.json -o x.exr
 "$bin/neph-render" -q - --size 8x8 --spp 1 -o x.exr <gauss.json || fail "a scene is not read from standard input"
 rm x.exr
@@ -117,7 +159,14 @@ try() {
 }
 cloud='{"scene": 1, "clouds": [{"generator": "neph-gauss"'
 try '1:' '{'
-try ' there is no key "meshes"' '{"scene": 1, "clouds": [], "meshes": []}'
+mesh='{"scene": 1, "clouds": [], "meshes": [{"file": '
+try ' meshes[0]: "../x.obj" leaves' "$mesh\"../x.obj\"}]}"
+ln -s /etc/passwd link.obj
+try ' meshes[0]: "link.obj" is a link' "$mesh\"link.obj\"}]}"
+try ' meshes[0]: none.obj: cannot open' "$mesh\"none.obj\"}]}"
+try ' meshes[0]: bad.json: not a mesh' "$mesh\"bad.json\"}]}"
+printf 'v 0 0 0\nf 1 1 2\n' >bad.obj
+try ' meshes[1]: bad.obj:2:' "$mesh\"wall.obj\"}, {\"file\": \"bad.obj\"}]}"
 try ' clouds[0]: "../x.neph" leaves' '{"scene": 1, "clouds": [{"file": "../x.neph"}]}'
 try ' clouds[0]: "/etc/passwd" leaves' '{"scene": 1, "clouds": [{"file": "/etc/passwd"}]}'
 try ' clouds[0]: none.neph: cannot open' '{"scene": 1, "clouds": [{"file": "none.neph"}]}'
@@ -147,6 +196,7 @@ refused "more than 10000000 primitives" "$bin/neph-info" big.json
 [ ! -e x.png ] || fail "a refused scene left a picture"
 
 wrong "cannot name standard input" "$bin/neph-render" - -o x.png --save-scene x.json </dev/null
+wrong "name the mesh's file" "$bin/neph-render" gauss.neph --mesh - -o x.png --save-scene x.json <wall.obj
 wrong "needs a file's name" "$bin/neph-gauss" -o x.neph --save-scene -
 wrong "give -o FILE" "$bin/neph-edit" gauss.neph --save-scene x.json
 # What a program leaves out of a scene is said.

@@ -47,6 +47,9 @@ static const char *const everything =
     "{\"generator\": \"neph-lsys\", \"input\": \"b.lsys\", \"options\": {\"angle\": \"50..100\", "
     "\"no-hollow\": true, \"sigma\": [5, 2.25, 1e-7], \"seed\": \"18446744073709551615\", \"count\": 40}, "
     "\"translate\": [1, 2, 3], \"rotate\": [10, 20, 30], \"scale\": 2, \"keep-depth\": true}], "
+    "\"meshes\": [{\"file\": \"rock.obj\", \"note\": \"grey\"}, {\"file\": \"hill.ply\", \"up\": \"y\", "
+    "\"unit\": 0.01, \"albedo\": [0.2, 0.3, 0.1], \"translate\": [1, -2, 3], \"rotate\": [0, 45, 0], "
+    "\"scale\": [1, 2, 1], \"mirror\": \"x\"}, {\"file\": \"b.glb\", \"albedo\": 0.8, \"up\": \"z\"}], "
     "\"medium\": {\"albedo\": 0.9}, "
     "\"sun\": {\"azimuth\": 100, \"height\": -2.5, \"irradiance\": 3, \"angle\": 1}, "
     "\"lamp\": {\"position\": [0, 5, 0], \"intensity\": [100, 50, 25]}, \"sky\": [0.1, 0.2, 0.3], "
@@ -86,6 +89,15 @@ static void all_keys_are_read(void **state)
     check_option(&grown->options.items[3], "seed", "18446744073709551615");
     check_option(&grown->options.items[4], "count", "40");
     assert_true(grown->place.scale[1] == 2 && grown->place.rotate[2] == 30 && grown->place.keep_depth);
+    assert_int_equal(scene->mesh_count, 3);
+    const shape_scene_mesh *rock = &scene->meshes[0], *hill = &scene->meshes[1];
+    assert_string_equal(rock->file, "rock.obj");
+    assert_string_equal(rock->note, "grey");
+    assert_true(rock->up == SHAPE_SCENE_UP_FORMAT && rock->unit == 1 && rock->albedo[2] == 0.5);
+    assert_true(hill->up == SHAPE_SCENE_UP_Y && hill->unit == 0.01 && hill->albedo[1] == 0.3);
+    assert_true(hill->place.translate[1] == -2 && hill->place.rotate[1] == 45 && hill->place.scale[1] == 2);
+    assert_true(hill->place.mirror[0] && !hill->place.mirror[1]);
+    assert_true(scene->meshes[2].up == SHAPE_SCENE_UP_Z && scene->meshes[2].albedo[1] == 0.8);
     assert_true(scene->sun_given && scene->sun[0] == 100 && scene->sun[1] == -2.5);
     assert_true(scene->sun_irradiance[2] == 3 && scene->sun_angle == 1);
     assert_true(scene->lamp_given && scene->lamp[1] == 5 && scene->lamp_intensity[2] == 25);
@@ -93,6 +105,35 @@ static void all_keys_are_read(void **state)
     assert_true(scene->eye[2] == 5 && scene->target[1] == 1 && scene->fov == 30 && scene->size[1] == 36);
     assert_true(scene->exposure_given && scene->exposure == -0.5);
     shape_scene_destroy(scene);
+}
+
+/* Where points of a mesh's file come to stand, worked out by hand: axes, then unit, then scale, turn and way. */
+static void meshes_stand_where_they_are_put(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        bool z_up; /* of the format */
+        double from[3], to[3];
+    } all[] = {
+        {"", false, {1, 2, 3}, {1, 2, 3}},
+        {"", true, {1, 2, 3}, {1, 3, -2}},
+        {", \"up\": \"y\"", true, {1, 2, 3}, {1, 2, 3}},
+        {", \"up\": \"z\", \"unit\": 10", false, {1, 2, 3}, {10, 30, -20}},
+        {", \"scale\": [1, 2, 4], \"translate\": [100, 0, 0]", false, {1, 2, 3}, {101, 4, 12}},
+        {", \"unit\": 0.5, \"rotate\": [0, 90, 0], \"translate\": [0, 7, 0]", false, {2, 4, 6}, {3, 9, -1}},
+        {", \"mirror\": \"z\"", false, {1, 2, 3}, {1, 2, -3}}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        char text[256];
+        snprintf(text, sizeof text, HEAD "\"meshes\": [{\"file\": \"m\"%s}]}", all[i].text);
+        shape_scene *scene = read_good(text);
+        shape_frame frame = shape_scene_mesh_frame(&scene->meshes[0], all[i].z_up);
+        const double *f = all[i].from, *t = all[i].to;
+        shape_dvec3 p = shape_frame_point(&frame, shape_dvec3_make(f[0], f[1], f[2]));
+        if (fabs(p.x - t[0]) > 1e-12 || fabs(p.y - t[1]) > 1e-12 || fabs(p.z - t[2]) > 1e-12)
+            fail_msg("\"%s\" puts the point at %g, %g, %g", all[i].text, p.x, p.y, p.z);
+        shape_scene_destroy(scene);
+    }
 }
 
 /* Writing, reading and writing again gives the same bytes, so nothing is lost on the way. */
@@ -187,8 +228,18 @@ static void mistakes_have_their_place(void **state)
         {"{\"scene\": 2, \"clouds\": []}", "s.json: scene: expected 1"},
         {"{\"scene\": 1}", "no clouds"},
         {HEAD "\"scene\": 1}", "duplicate"},
-        {HEAD "\"meshes\": []}", "no key \"meshes\""},
-        {HEAD "\"lightning\": 1}", "the keys are scene, clouds, medium"},
+        {HEAD "\"meshes\": {}}", "meshes: expected an array"},
+        {HEAD "\"meshes\": [3]}", "meshes[0]: expected an object"},
+        {HEAD "\"meshes\": [{\"file\": \"a.obj\"}, {}]}", "meshes[1]: names no file"},
+        {HEAD "\"meshes\": [{\"file\": 1}]}", "meshes[0].file: expected a text"},
+        {HEAD "\"meshes\": [{\"file\": \"\"}]}", "meshes[0].file: is empty"},
+        {HEAD "\"meshes\": [{\"file\": \"a\", \"up\": \"x\"}]}", "meshes[0].up: expected \"y\" or \"z\""},
+        {HEAD "\"meshes\": [{\"file\": \"a\", \"unit\": 0}]}", "meshes[0].unit: 0 is out of range"},
+        {HEAD "\"meshes\": [{\"file\": \"a\", \"albedo\": 1.1}]}", "meshes[0].albedo: 1.1 is out of range"},
+        {HEAD "\"meshes\": [{\"file\": \"a\", \"albedo\": [0, 2, 0]}]}", "meshes[0].albedo[1]: 2 is out of"},
+        {HEAD "\"meshes\": [{\"file\": \"a\", \"scale\": 0}]}", "meshes[0].scale: 0 is out of range"},
+        {HEAD "\"meshes\": [{\"file\": \"a\", \"keep-depth\": true}]}", "meshes[0]: there is no key \"keep-depth\""},
+        {HEAD "\"lightning\": 1}", "the keys are scene, clouds, meshes, medium"},
         {HEAD "\"note\": 3}", "note: expected a text"},
         {HEAD "\"camera\": {\"eye\": [0, 0]}}", "camera.eye: expected three numbers"},
         {HEAD "\"camera\": {\"eye\": [0, 0, \"1\"]}}", "camera.eye[2]: expected a number"},
@@ -255,6 +306,8 @@ static void limits_hold(void **state)
     refuse_repeat("", " ", SHAPE_SCENE_SIZE_MAX + 1, "", "larger than the limit");
     refuse_repeat(CLOUDS "{\"file\": \"", "x", SHAPE_SCENE_TEXT_MAX + 1, "\"}]}", "longer than");
     refuse_repeat(CLOUDS "{\"file\": \"a\", \"name\": \"", "x", SHAPE_NAME_MAX + 1, "\"}]}", "longer than");
+    refuse_repeat(HEAD "\"meshes\": [", "{\"file\": \"a\"},", SHAPE_SCENE_MESHES_MAX, "{\"file\": \"a\"}]}",
+                  "meshes[1000]: more than 1000 meshes");
     refuse_repeat(CLOUDS "{\"file\": \"a\", \"copies\": [", "{},", SHAPE_SCENE_CLOUDS_MAX, "{}]}]}",
                   "clouds");
     /* Brackets and commas within texts count for nothing. */
@@ -389,6 +442,7 @@ static void names_are_relative_to_the_scene(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(all_keys_are_read),
+                                       cmocka_unit_test(meshes_stand_where_they_are_put),
                                        cmocka_unit_test(written_scenes_read_back),
                                        cmocka_unit_test(numbers_survive),
                                        cmocka_unit_test(sun_directions_become_angles),

@@ -49,3 +49,9 @@ void cli_input_free(cli_input *input)
     shape_set_destroy(input->set);
     shape_scene_destroy(input->scene);
 }
+
+void cli_note_meshes(const shape_scene *scene, const char *what)
+{
+    if (scene && scene->mesh_count)
+        cli_say("note: meshes of the scene are %s (neph-render draws them)", what);
+}

@@ -4,48 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shape/file.h"
-#include "shape/mesh.h"
+#include "mesh_file.h"
 #include "shape/meshfit.h"
 
-enum { MAX_FILE = 0x40000000, MEASURE_SAMPLES = 20000 };
+enum { MEASURE_SAMPLES = 20000 };
 
 static const cli_mesh_values *const options = &cli_mesh_options;
-
-static shape_mesh *read_mesh(const char *path, shape_mesh_format *format)
-{
-    unsigned char *bytes;
-    size_t size;
-    shape_error error;
-    shape_mesh *mesh = NULL;
-    cli_check(shape_file_read(path, MAX_FILE, &bytes, &size, &error), &error);
-    cli_note_input(path, bytes, size);
-    const char *name = strcmp(path, "-") ? path : "standard input";
-    *format = shape_mesh_format_guess(path, bytes, size);
-    if (!size)
-        cli_fail("%s: the file is empty", name);
-    if (*format == SHAPE_MESH_UNKNOWN)
-        cli_fail("%s: not a mesh that is known (give an OBJ, PLY, STL, OFF, glTF or GLB file)", name);
-    if (*format == SHAPE_MESH_GLTF || *format == SHAPE_MESH_GLB) {
-        const char *slash = strrchr(path, '/');
-        size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
-        char *folder = calloc(length + 1, 1);
-        if (!folder)
-            cli_fail("out of memory");
-        memcpy(folder, path, length);
-        cli_check(shape_gltf_decode(name, folder, bytes, size, &mesh, &error), &error);
-        free(folder);
-    } else {
-        cli_check(shape_mesh_decode(*format, name, bytes, size, &mesh, &error), &error);
-    }
-    free(bytes);
-    return mesh;
-}
 
 /* From the file's axes and unit to y up and metres, scaled to --size. */
 static void turn_and_scale(shape_mesh *mesh, shape_mesh_format format)
 {
-    bool z_up = format == SHAPE_MESH_PLY || format == SHAPE_MESH_STL || format == SHAPE_MESH_OFF;
+    bool z_up = mesh_file_z_up(format);
     if (options->up_given)
         z_up = options->up == 1;
     double s = options->unit;
@@ -207,7 +176,7 @@ shape_set *cli_mesh_make(const char *input, uint64_t seed)
     shape_error error;
     shape_mesh_format format;
     check_options();
-    shape_mesh *mesh = read_mesh(input, &format);
+    shape_mesh *mesh = mesh_file_read(input, true, &format);
     shape_status status = shape_mesh_repair(mesh, &error);
     if (status)
         cli_fail("%s: %s", input, error.text);

@@ -26,7 +26,9 @@ void cli_picture_apply(const shape_set *set, shape_view *view, shape_light *ligh
 
 /* Takes from a scene what the command line has not given; before cli_picture_apply. */
 void cli_picture_use_scene(const shape_scene *scene);
-/* Does --save-scene: the clouds as they came in, seen and lit as they were shown. */
-void cli_picture_save_scene(const cli_input *input, const shape_view *view, const shape_light *light);
+/* Does --save-scene: the clouds and meshes as they came in, seen and lit as they were shown. more adds what the command
+ * line brought beside them; NULL: nothing. */
+void cli_picture_save_scene(const cli_input *input, const shape_view *view, const shape_light *light,
+                            void (*more)(shape_scene *scene));
 
 #endif

@@ -119,7 +119,8 @@ static shape_scene *scene_of_file(const cli_input *input)
     return scene;
 }
 
-void cli_picture_save_scene(const cli_input *input, const shape_view *view, const shape_light *light)
+void cli_picture_save_scene(const cli_input *input, const shape_view *view, const shape_light *light,
+                            void (*more)(shape_scene *scene))
 {
     if (!cli_save_wanted())
         return;
@@ -128,6 +129,10 @@ void cli_picture_save_scene(const cli_input *input, const shape_view *view, cons
         rename_file(input, &scene->clouds[i].file);
         rename_file(input, &scene->clouds[i].input);
     }
+    for (size_t i = 0; input->scene && i < scene->mesh_count; i++)
+        rename_file(input, &scene->meshes[i].file);
+    if (more)
+        more(scene);
     into_scene(view, light, scene);
     cli_save_scene(scene);
     if (!input->scene)

@@ -42,4 +42,6 @@ cli_input cli_input_read(const char *path);
 /* The same from the bytes of a file. */
 cli_input cli_input_decode(const char *path, const unsigned char *bytes, size_t size);
 void cli_input_free(cli_input *input);
+/* A line that says what this program makes of the scene's meshes, where there are any: "not drawn". scene may be NULL. */
+void cli_note_meshes(const shape_scene *scene, const char *what);
 #endif

@@ -135,6 +135,7 @@ static void read_scene(const chart_plan *plan, const char *path, chart_scene *sc
         cli_fail("%s: there is no cloud to measure by", path);
     if (input.scene)
         cli_picture_use_scene(input.scene);
+    cli_note_meshes(input.scene, "left out");
     if (cli_picture_values.lamp_given)
         cli_say("note: %s: the lamp is left out, since only the reference could show it", path);
     /* The size comes first: the view that frames a cloud depends on it. */

@@ -196,6 +196,7 @@ static void check_command(void)
 
 static shape_set *read_all(const cli_common *common)
 {
+    static const char edit_leaves_meshes[] = "left out, since a .neph holds clouds only";
     int from_stdin = 0;
     for (int i = 0; i < common->argument_count; i++)
         from_stdin += !strcmp(common->arguments[i], "-");
@@ -203,8 +204,10 @@ static shape_set *read_all(const cli_common *common)
         cli_wrong("standard input can be read once only (name the other inputs)");
     shape_error error;
     cli_input all = cli_input_read(common->arguments[0]);
+    cli_note_meshes(all.scene, edit_leaves_meshes);
     for (int i = 1; i < common->argument_count; i++) {
         cli_input next = cli_input_read(common->arguments[i]);
+        cli_note_meshes(next.scene, edit_leaves_meshes);
         cli_check(shape_set_append(all.set, next.set, &error), &error);
         cli_input_free(&next);
     }

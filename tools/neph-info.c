@@ -296,6 +296,8 @@ static void print_table(FILE *out, const report *r)
     for (size_t i = 0; i < set->extra_count; i++)
         fprintf(out, "a chunk that this version does not know: %.4s, %zu bytes\n", set->extras[i].type,
                 set->extras[i].size);
+    for (size_t i = 0; r->input.scene && i < r->input.scene->mesh_count; i++)
+        fprintf(out, "opaque mesh %zu: %s\n", i + 1, r->input.scene->meshes[i].file);
     size_t *first = first_clouds(set);
     for (size_t i = 0; i < set->cloud_count; i++)
         print_cloud(out, r, i, first);
@@ -444,7 +446,13 @@ static void print_json(FILE *out, const report *r)
             fputc(',', out);
         print_json_cloud(out, r, i);
     }
-    fputs("]}\n", out);
+    fputc(']', out);
+    for (size_t i = 0; r->input.scene && i < r->input.scene->mesh_count; i++) {
+        fputs(i ? ", {\"file\": " : ",\n  \"meshes\": [{\"file\": ", out);
+        print_json_text(out, r->input.scene->meshes[i].file);
+        fputs(i + 1 == r->input.scene->mesh_count ? "}]" : "}", out);
+    }
+    fputs("}\n", out);
 }
 
 /* --- CSV (RFC 4180) --- */

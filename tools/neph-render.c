@@ -291,8 +291,6 @@ static void check_method(void)
         cli_wrong("--denoise belongs to --method reference");
     if (method == REFERENCE && render_march_resolution(&cells))
         cli_wrong("--light-resolution: --method reference has no light grid");
-    if (method == MARCH)
-        render_march_check(render_opaque_given());
     if (method != REFERENCE &&
         (noise_given || cli_picture_values.lamp_given || bounces_given || cli_picture_values.sun_angle_given))
         cli_wrong("--noise, --error, --lamp, --max-bounces and --sun-angle belong to --method reference");
@@ -302,14 +300,6 @@ static void check_method(void)
         cli_wrong("--mesh: the methods of 2018 have no opaque things (choose reference or march)");
     if (method < PAPER && paper_lod)
         cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
-}
-
-/* What a scene would have to hold, and cannot. */
-static void check_save(const cli_common *common)
-{
-    cli_save_check(common);
-    if (cli_save_wanted() && render_opaque_given())
-        cli_wrong("--save-scene --mesh: a scene holds no meshes (leave one of them out)");
 }
 
 static void check_command(const cli_common *common)
@@ -335,6 +325,8 @@ static void use_scene(const cli_input *input)
     if (method != REFERENCE && input->scene->sun_angle_given && input->scene->sun_angle > 0)
         cli_say("note: --method %s takes the sun as a direction, not a disc (--method reference has it)",
                 method_names[method]);
+    if (method >= PAPER)
+        cli_note_meshes(input->scene, "not shown by this method");
 }
 
 static void render(const cli_common *common)
@@ -344,13 +336,17 @@ static void render(const cli_common *common)
     picture p;
     check_command(common);
     shape_image_format format = choose_format(common);
-    check_save(common);
+    cli_save_check(common);
+    if (cli_save_wanted())
+        render_opaque_save_check();
     cli_input input = cli_volume_input_read(common->arguments[0]);
     const shape_set *set = input.set;
     use_scene(&input);
+    if (method == MARCH)
+        render_march_check(render_opaque_given() || (input.scene && input.scene->mesh_count));
     if (cli_given("lamp-intensity") && !cli_picture_values.lamp_given)
         cli_wrong("--lamp-intensity: there is no lamp (give --lamp X,Y,Z)");
-    shape_opaque *opaque = render_opaque_read();
+    shape_opaque *opaque = render_opaque_read(&input);
     cli_picture_apply(set, &p.view, &p.light);
     p.image = make_image(&p.view, format);
     double start = seconds();
@@ -369,7 +365,7 @@ static void render(const cli_common *common)
     shape_image_destroy(p.image);
     shape_volume_destroy(volume);
     shape_opaque_destroy(opaque);
-    cli_picture_save_scene(&input, &p.view, &p.light);
+    cli_picture_save_scene(&input, &p.view, &p.light, render_opaque_save);
     cli_input_free(&input);
 }
 

@@ -179,6 +179,7 @@ int main(int argc, char **argv)
         fit_volume(&common, bytes, size);
     } else {
         cli_input input = cli_input_decode(path, bytes, size);
+        cli_note_meshes(input.scene, "left out, since a volume holds clouds only");
         write_volume(&common, input.set);
         cli_input_free(&input);
     }

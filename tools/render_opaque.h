@@ -1,14 +1,19 @@
-/* neph-render's --mesh: opaque things in the picture. */
+/* The opaque things of neph-render: those of the scene, and --mesh. */
 #ifndef NEPHELE_RENDER_OPAQUE_H
 #define NEPHELE_RENDER_OPAQUE_H
 
 #include "cli.h"
+#include "cli_scene.h"
 #include "shape/opaque.h"
 
 extern const cli_option render_opaque_options[];
 bool render_opaque_given(void);
-/* Reads all --mesh files; NULL where none was given. The caller destroys it. Exits 1 with what is wrong with a file, 2
- * where colours are. */
-shape_opaque *render_opaque_read(void);
+/* Reads the meshes of the input's scene and all --mesh files; NULL where there are none. The caller destroys it. Exits 1
+ * with what is wrong with a file, 2 where colours are. */
+shape_opaque *render_opaque_read(const cli_input *input);
+/* Adds the --mesh files to a scene that is being saved. */
+void render_opaque_save(shape_scene *scene);
+/* Ends the program, exit 2, where they cannot be saved. */
+void render_opaque_save_check(void);
 
 #endif

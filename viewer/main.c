@@ -419,7 +419,7 @@ int main(int argc, char **argv)
     view_job_free(&job);
     shape_morph_destroy(morph);
     shape_set_destroy(turned);
-    cli_picture_save_scene(&opened.input, &job.view, &job.light);
+    cli_picture_save_scene(&opened.input, &job.view, &job.light, NULL);
     cli_input_free(&opened.input);
     cli_input_free(&other.input);
     return cli_finish(&common);

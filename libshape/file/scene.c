@@ -38,7 +38,12 @@ void shape_scene_destroy(shape_scene *scene)
         free_options(&cloud->options);
         free_options(&cloud->medium);
     }
+    for (size_t i = 0; i < scene->mesh_count; i++) {
+        free(scene->meshes[i].note);
+        free(scene->meshes[i].file);
+    }
     free_options(&scene->medium);
+    free(scene->meshes);
     free(scene->clouds);
     free(scene->note);
     free(scene);
@@ -54,6 +59,31 @@ shape_status shape_scene_add_cloud(shape_scene *scene, shape_scene_cloud **cloud
     memset(*cloud, 0, sizeof **cloud);
     (*cloud)->place = shape_transform_defaults();
     return SHAPE_OK;
+}
+
+shape_status shape_scene_add_mesh(shape_scene *scene, shape_scene_mesh **mesh, shape_error *error)
+{
+    shape_status status = shape_array_reserve((void **)&scene->meshes, &scene->mesh_capacity,
+                                              scene->mesh_count + 1, sizeof *scene->meshes, error);
+    if (status)
+        return status;
+    *mesh = &scene->meshes[scene->mesh_count++];
+    memset(*mesh, 0, sizeof **mesh);
+    (*mesh)->unit = 1;
+    (*mesh)->albedo[0] = (*mesh)->albedo[1] = (*mesh)->albedo[2] = 0.5;
+    (*mesh)->place = shape_transform_defaults();
+    return SHAPE_OK;
+}
+
+shape_frame shape_scene_mesh_frame(const shape_scene_mesh *mesh, bool z_up)
+{
+    double s = mesh->unit;
+    shape_frame place = shape_transform_frame(&mesh->place);
+    if (mesh->up != SHAPE_SCENE_UP_FORMAT)
+        z_up = mesh->up == SHAPE_SCENE_UP_Z;
+    shape_frame file = {{{s, 0, 0, 0}, {0, s, 0, 0}, {0, 0, s, 0}}};
+    shape_frame turned = {{{s, 0, 0, 0}, {0, 0, s, 0}, {0, -s, 0, 0}}};
+    return shape_frame_multiply(&place, z_up ? &turned : &file);
 }
 
 shape_status shape_scene_add_copy(shape_scene_cloud *cloud, const shape_transform *place, shape_error *error)

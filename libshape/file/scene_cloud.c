@@ -82,43 +82,9 @@ shape_status scene_read_options(scene_reader *r, const json_t *object, void *to)
 
 /* --- places --- */
 
-static shape_status place_translate(scene_reader *r, const json_t *value, void *to)
-{
-    return scene_read_three(r, value, -1e12, 1e12, ((shape_transform *)to)->translate);
-}
-
-static shape_status place_rotate(scene_reader *r, const json_t *value, void *to)
-{
-    return scene_read_three(r, value, -1e6, 1e6, ((shape_transform *)to)->rotate);
-}
-
-static shape_status place_scale(scene_reader *r, const json_t *value, void *to)
-{
-    return scene_read_one_or_three(r, value, 1e-6, 1e6, ((shape_transform *)to)->scale);
-}
-
-static shape_status place_mirror(scene_reader *r, const json_t *value, void *to)
-{
-    shape_transform *place = to;
-    const char *axes = json_string_value(value);
-    if (!axes || !*axes || axes[strspn(axes, "xyz")])
-        return scene_wrong(r, "expected x, y, z or several of them, as a text");
-    for (; *axes; axes++)
-        place->mirror[*axes - 'x'] = true;
-    return SHAPE_OK;
-}
-
-static shape_status place_keep_depth(scene_reader *r, const json_t *value, void *to)
-{
-    if (!json_is_boolean(value))
-        return scene_wrong(r, "expected true or false");
-    ((shape_transform *)to)->keep_depth = json_is_true(value);
-    return SHAPE_OK;
-}
-
-static const scene_member place_members[] = {{"translate", place_translate, 0},   {"rotate", place_rotate, 0},
-                                             {"scale", place_scale, 0},           {"mirror", place_mirror, 0},
-                                             {"keep-depth", place_keep_depth, 0}, {0}};
+static const scene_member place_members[] = {{"translate", scene_place_translate, 0},   {"rotate", scene_place_rotate, 0},
+                                             {"scale", scene_place_scale, 0},           {"mirror", scene_place_mirror, 0},
+                                             {"keep-depth", scene_place_keep_depth, 0}, {0}};
 
 /* --- clouds --- */
 
@@ -155,11 +121,11 @@ static const scene_member cloud_members[] = {
     {"input", scene_read_text, offsetof(shape_scene_cloud, input)},
     {"options", scene_read_options, offsetof(shape_scene_cloud, options)},
     {"medium", scene_read_options, offsetof(shape_scene_cloud, medium)},
-    {"translate", place_translate, offsetof(shape_scene_cloud, place)},
-    {"rotate", place_rotate, offsetof(shape_scene_cloud, place)},
-    {"scale", place_scale, offsetof(shape_scene_cloud, place)},
-    {"mirror", place_mirror, offsetof(shape_scene_cloud, place)},
-    {"keep-depth", place_keep_depth, offsetof(shape_scene_cloud, place)},
+    {"translate", scene_place_translate, offsetof(shape_scene_cloud, place)},
+    {"rotate", scene_place_rotate, offsetof(shape_scene_cloud, place)},
+    {"scale", scene_place_scale, offsetof(shape_scene_cloud, place)},
+    {"mirror", scene_place_mirror, offsetof(shape_scene_cloud, place)},
+    {"keep-depth", scene_place_keep_depth, offsetof(shape_scene_cloud, place)},
     {"copies", cloud_copies, 0},
     {"note", scene_read_note, offsetof(shape_scene_cloud, note)},
     {0}};

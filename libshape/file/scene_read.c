@@ -1,5 +1,5 @@
 /* Scenes from JSON (docs/scene.md): untrusted text, checked key by key. The limits, the parser, and the members of the
- * whole; what these hold is read by scene_cloud.c and scene_light.c. */
+ * whole; what these hold is read by scene_cloud.c, scene_mesh.c and scene_light.c. */
 #include "file/scene_reader.h"
 
 static shape_status scene_version(scene_reader *r, const json_t *value, void *to)
@@ -12,6 +12,7 @@ static shape_status scene_version(scene_reader *r, const json_t *value, void *to
 
 static const scene_member scene_members[] = {{"scene", scene_version, 0},
                                              {"clouds", scene_clouds, 0},
+                                             {"meshes", scene_meshes, 0},
                                              {"medium", scene_read_options, offsetof(shape_scene, medium)},
                                              {"sun", scene_sun, 0},
                                              {"lamp", scene_lamp, 0},

@@ -50,8 +50,16 @@ shape_status scene_read_note(scene_reader *r, const json_t *value, void *to);
 /* To shape_scene_options. */
 shape_status scene_read_options(scene_reader *r, const json_t *object, void *to);
 
+/* Members of a place: to a shape_transform. */
+shape_status scene_place_translate(scene_reader *r, const json_t *value, void *to);
+shape_status scene_place_rotate(scene_reader *r, const json_t *value, void *to);
+shape_status scene_place_scale(scene_reader *r, const json_t *value, void *to);
+shape_status scene_place_mirror(scene_reader *r, const json_t *value, void *to);
+shape_status scene_place_keep_depth(scene_reader *r, const json_t *value, void *to);
+
 /* The members of a scene: to a shape_scene. */
 shape_status scene_clouds(scene_reader *r, const json_t *value, void *to);
+shape_status scene_meshes(scene_reader *r, const json_t *value, void *to);
 shape_status scene_sun(scene_reader *r, const json_t *value, void *to);
 shape_status scene_lamp(scene_reader *r, const json_t *value, void *to);
 shape_status scene_sky(scene_reader *r, const json_t *value, void *to);

@@ -29,6 +29,15 @@ static void put_three(writer *w, const double v[3])
     fputc(']', w->out);
 }
 
+/* One number where all agree. */
+static void put_one_or_three(writer *w, const double v[3])
+{
+    if (v[0] == v[1] && v[1] == v[2])
+        put_number(w, v[0]);
+    else
+        put_three(w, v);
+}
+
 static void put_text(writer *w, const char *text)
 {
     json_t *string = json_string(text);
@@ -102,10 +111,7 @@ static void put_place(writer *w, const shape_transform *place, bool *first, cons
     }
     if (s[0] != 1 || s[1] != 1 || s[2] != 1) {
         put_key(w, first, between, "scale");
-        if (s[0] == s[1] && s[1] == s[2])
-            put_number(w, s[0]);
-        else
-            put_three(w, s);
+        put_one_or_three(w, s);
     }
     if (place->mirror[0] || place->mirror[1] || place->mirror[2]) {
         put_key(w, first, between, "mirror");
@@ -155,6 +161,47 @@ static void put_cloud(writer *w, const shape_scene_cloud *cloud)
         fputs("\n      ]", w->out);
     }
     fputs("\n    }", w->out);
+}
+
+static void put_mesh(writer *w, const shape_scene_mesh *mesh)
+{
+    static const char *const between = "\n      ";
+    static const double usual[3] = {0.5, 0.5, 0.5};
+    bool first = true;
+    fputs("\n    {", w->out);
+    if (mesh->note) {
+        put_key(w, &first, between, "note");
+        put_text(w, mesh->note);
+    }
+    put_key(w, &first, between, "file");
+    put_text(w, mesh->file ? mesh->file : "");
+    if (mesh->up != SHAPE_SCENE_UP_FORMAT) {
+        put_key(w, &first, between, "up");
+        put_text(w, mesh->up == SHAPE_SCENE_UP_Y ? "y" : "z");
+    }
+    if (mesh->unit != 1) {
+        put_key(w, &first, between, "unit");
+        put_number(w, mesh->unit);
+    }
+    if (memcmp(mesh->albedo, usual, sizeof usual)) {
+        put_key(w, &first, between, "albedo");
+        put_one_or_three(w, mesh->albedo);
+    }
+    put_place(w, &mesh->place, &first, between);
+    fputs("\n    }", w->out);
+}
+
+static void put_meshes(writer *w, const shape_scene *scene, bool *first)
+{
+    if (!scene->mesh_count)
+        return;
+    put_key(w, first, "\n  ", "meshes");
+    fputc('[', w->out);
+    for (size_t i = 0; i < scene->mesh_count; i++) {
+        fputs(i ? "," : "", w->out);
+        put_mesh(w, &scene->meshes[i]);
+    }
+    fputs("\n  ]", w->out);
 }
 
 static void put_sun(writer *w, const shape_scene *scene, bool *first)
@@ -249,6 +296,7 @@ static void put_scene(writer *w, const shape_scene *scene)
         put_cloud(w, &scene->clouds[i]);
     }
     fputs(scene->cloud_count ? "\n  ]" : "]", w->out);
+    put_meshes(w, scene, &first);
     if (scene->medium.count) {
         put_key(w, &first, between, "medium");
         put_options(w, &scene->medium);

@@ -1,6 +1,6 @@
-/* Scenes: which clouds there are and where they stand, with light and camera, as a JSON file. docs/scene.md describes
- * the file. A scene names clouds, by file or by generator and options; it holds none. Making them is the programs' work
- * (tools/cli_scene.c). */
+/* Scenes: which clouds and opaque meshes there are and where they stand, with light and camera, as a JSON file.
+ * docs/scene.md describes the file. A scene names clouds, by file or by generator and options, and meshes by file; it
+ * holds none. Making them is the programs' work (tools/cli_scene.c, tools/opaque_scene.c). */
 #ifndef SHAPE_SCENE_H
 #define SHAPE_SCENE_H
 
@@ -19,7 +19,9 @@ enum {
     SHAPE_SCENE_TEXT_MAX = 4096,     /* bytes of a text */
     SHAPE_SCENE_CLOUDS_MAX = 100000, /* clouds, all copies counted, that programs place */
     SHAPE_SCENE_PRIMITIVES_MAX =
-        10000000 /* primitives that programs hold for one scene; copies share theirs */
+        10000000, /* primitives that programs hold for one scene; copies share theirs */
+    SHAPE_SCENE_MESHES_MAX = 1000,        /* meshes */
+    SHAPE_SCENE_TRIANGLES_MAX = 10000000, /* triangles of all meshes that programs hold for one scene */
 };
 
 /* An option of a generator or of the medium, as on a command line without its dashes. */
@@ -45,11 +47,29 @@ typedef struct shape_scene_cloud {
     size_t copy_count, copy_capacity;
 } shape_scene_cloud;
 
+typedef enum shape_scene_up {
+    SHAPE_SCENE_UP_FORMAT, /* y for glTF, GLB and OBJ, z for PLY, STL and OFF */
+    SHAPE_SCENE_UP_Y,
+    SHAPE_SCENE_UP_Z
+} shape_scene_up;
+
+/* One entry of "meshes": an opaque thing (shape/opaque.h). */
+typedef struct shape_scene_mesh {
+    char *note;            /* NULL: none */
+    char *file;            /* OBJ, PLY, STL, OFF, glTF or GLB, relative to the scene's folder */
+    shape_scene_up up;     /* which axis of the file is up; default as its format has it */
+    double unit;           /* metres a unit of the file, 1e-9 to 1e9; default 1 */
+    double albedo[3];      /* share of light that comes back, 0 to 1; default 0.5 */
+    shape_transform place; /* after axes and unit; keep_depth is not used */
+} shape_scene_mesh;
+
 /* What is not given is left to the program, whose defaults docs/scene.md repeats. */
 typedef struct shape_scene {
     char *note;
     shape_scene_cloud *clouds;
     size_t cloud_count, cloud_capacity;
+    shape_scene_mesh *meshes;
+    size_t mesh_count, mesh_capacity;
     shape_scene_options medium; /* overrides for all clouds, before each entry's own */
 
     bool sun_given, sun_none, sun_irradiance_given, sun_angle_given;
@@ -77,6 +97,11 @@ shape_scene *shape_scene_create(shape_error *error);
 void shape_scene_destroy(shape_scene *scene); /* NULL is allowed */
 /* Adds an entry with nothing in it but an identity place. Pointers into scene->clouds end with the call. */
 shape_status shape_scene_add_cloud(shape_scene *scene, shape_scene_cloud **cloud, shape_error *error);
+/* Adds a mesh with the defaults above and no file. Pointers into scene->meshes end with the call. */
+shape_status shape_scene_add_mesh(shape_scene *scene, shape_scene_mesh **mesh, shape_error *error);
+/* The whole placement of a mesh, from units of its file to metres of the world; z_up: what its format has as up, for
+ * SHAPE_SCENE_UP_FORMAT. */
+shape_frame shape_scene_mesh_frame(const shape_scene_mesh *mesh, bool z_up);
 /* Adds a placed copy. */
 shape_status shape_scene_add_copy(shape_scene_cloud *cloud, const shape_transform *place, shape_error *error);
 /* Adds an option; both texts are copied, text may be NULL for a flag. */

@@ -1,0 +1,62 @@
+/* The opaque meshes of scenes from JSON: their files, axes, units, places and colours. */
+#include <string.h>
+
+#include "file/scene_reader.h"
+
+static shape_status mesh_up(scene_reader *r, const json_t *value, void *to)
+{
+    const char *axis = json_string_value(value);
+    if (!axis || (strcmp(axis, "y") && strcmp(axis, "z")))
+        return scene_wrong(r, "expected \"y\" or \"z\"");
+    *(shape_scene_up *)to = *axis == 'y' ? SHAPE_SCENE_UP_Y : SHAPE_SCENE_UP_Z;
+    return SHAPE_OK;
+}
+
+static shape_status mesh_unit(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_number(r, value, 1e-9, 1e9, to);
+}
+
+static shape_status mesh_albedo(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_one_or_three(r, value, 0, 1, to);
+}
+
+static const scene_member mesh_members[] = {
+    {"file", scene_read_text, offsetof(shape_scene_mesh, file)},
+    {"up", mesh_up, offsetof(shape_scene_mesh, up)},
+    {"unit", mesh_unit, offsetof(shape_scene_mesh, unit)},
+    {"albedo", mesh_albedo, offsetof(shape_scene_mesh, albedo)},
+    {"translate", scene_place_translate, offsetof(shape_scene_mesh, place)},
+    {"rotate", scene_place_rotate, offsetof(shape_scene_mesh, place)},
+    {"scale", scene_place_scale, offsetof(shape_scene_mesh, place)},
+    {"mirror", scene_place_mirror, offsetof(shape_scene_mesh, place)},
+    {"note", scene_read_note, offsetof(shape_scene_mesh, note)},
+    {0}};
+
+static shape_status read_mesh(scene_reader *r, const json_t *value, shape_scene *scene)
+{
+    shape_scene_mesh *mesh;
+    if (scene->mesh_count == SHAPE_SCENE_MESHES_MAX)
+        return scene_wrong(r, "more than %d meshes (make the scene smaller)", SHAPE_SCENE_MESHES_MAX);
+    shape_status status = shape_scene_add_mesh(scene, &mesh, r->error);
+    if (!status)
+        status = scene_read_object(r, value, mesh_members, mesh);
+    if (!status && !mesh->file)
+        return scene_wrong(r, "names no file (write \"file\": \"rock.obj\")");
+    return status;
+}
+
+shape_status scene_meshes(scene_reader *r, const json_t *value, void *to)
+{
+    if (!json_is_array(value))
+        return scene_wrong(r, "expected an array, [...]");
+    for (size_t i = 0; i < json_array_size(value); i++) {
+        size_t used = scene_enter(r, NULL, i);
+        shape_status status = read_mesh(r, json_array_get(value, i), to);
+        if (status)
+            return status;
+        scene_leave(r, used);
+    }
+    return SHAPE_OK;
+}
