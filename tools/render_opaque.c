@@ -7,6 +7,8 @@
 #include "opaque_scene.h"
 
 static cli_texts meshes, colours;
+static double ground, ground_colour[3] = {0.2, 0.2, 0.2};
+static bool ground_given;
 
 const cli_option render_opaque_options[] = {
     {"mesh", 0, CLI_TEXTS, &meshes, 0, 0, "FILE",
@@ -15,11 +17,15 @@ const cli_option render_opaque_options[] = {
      NULL, false},
     {"mesh-colour", 0, CLI_TEXTS, &colours, 0, 0, "R,G,B",
      "share of light that the first, second ... --mesh gives back, 0 to 1 [0.5,0.5,0.5]", NULL, false},
+    {"ground", 0, CLI_NUMBER, &ground, -1e6, 1e6, "HEIGHT",
+     "level ground as far as one sees, at that height, metres [none]", &ground_given, false},
+    {"ground-colour", 0, CLI_VECTOR, ground_colour, 0, 1, "R,G,B",
+     "share of light that it gives back [0.2,0.2,0.2]", NULL, false},
     {0}};
 
 bool render_opaque_given(void)
 {
-    return meshes.count > 0;
+    return meshes.count > 0 || ground_given;
 }
 
 static void read_colour(int i, double albedo[3])
@@ -46,7 +52,9 @@ shape_opaque *render_opaque_read(const cli_input *input)
     bool in_scene = input->scene && input->scene->mesh_count;
     if (colours.count > meshes.count)
         cli_wrong("--mesh-colour: there are more colours than meshes");
-    if (!meshes.count && !in_scene)
+    if (cli_given("ground-colour") && !ground_given)
+        cli_wrong("--ground-colour needs --ground");
+    if (!render_opaque_given() && !in_scene)
         return NULL;
     shape_opaque *opaque = shape_opaque_create(&error);
     shape_scene *own = opaque ? shape_scene_create(&error) : NULL;
@@ -59,12 +67,18 @@ shape_opaque *render_opaque_read(const cli_input *input)
         opaque_scene_add_file(opaque, &own->meshes[i], meshes.text[i]);
     }
     shape_scene_destroy(own);
+    if (ground_given) {
+        const float albedo[3] = {(float)ground_colour[0], (float)ground_colour[1], (float)ground_colour[2]};
+        cli_check(shape_opaque_add_ground(opaque, ground, albedo, &error), &error);
+    }
     cli_check(shape_opaque_finish(opaque, &error), &error);
     return opaque;
 }
 
 void render_opaque_save_check(void)
 {
+    if (ground_given)
+        cli_wrong("--save-scene --ground: a scene holds no ground (leave one of them out)");
     for (int i = 0; i < meshes.count; i++)
         if (!strcmp(meshes.text[i], "-"))
             cli_wrong("--save-scene: a scene cannot name standard input (name the mesh's file)");

@@ -1,4 +1,4 @@
-/* The opaque things of neph-render: those of the scene, and --mesh. */
+/* The opaque things of neph-render and neph-view: those of the scene, --mesh and --ground. */
 #ifndef NEPHELE_RENDER_OPAQUE_H
 #define NEPHELE_RENDER_OPAQUE_H
 
@@ -8,7 +8,7 @@
 
 extern const cli_option render_opaque_options[];
 bool render_opaque_given(void);
-/* Reads the meshes of the input's scene and all --mesh files; NULL where there are none. The caller destroys it. Exits 1
+/* Reads the meshes of the input's scene and all --mesh files, and --ground; NULL where there are none. The caller destroys it. Exits 1
  * with what is wrong with a file, 2 where colours are. */
 shape_opaque *render_opaque_read(const cli_input *input);
 /* Adds the --mesh files to a scene that is being saved. */

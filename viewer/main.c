@@ -11,6 +11,7 @@
 #include "cli_scene.h"
 #include "cli_volume.h"
 #include "shape/file.h"
+#include "render_opaque.h"
 #include "shape/image.h"
 #include "view.h"
 
@@ -86,6 +87,7 @@ static const cli_option motion_options[] = {
 
 static const cli_group groups[] = {{"View", view_options},
                                    {"Picture", cli_picture_options},
+                                   {"Opaque things", render_opaque_options},
                                    {"Time", motion_options},
                                    {"Volumes (.vdb, raw)", cli_volume_options},
                                    {"Medium and place of volumes", cli_optics_options},
@@ -373,6 +375,16 @@ static void take_opened(view_job *job, const view_opened *opened)
         cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
 }
 
+/* Of a scene, it is known only now whether there are meshes. */
+static void check_opaque(const view_job *job)
+{
+    if (!job->opaque || method < SHAPE_GL_PAPER)
+        return;
+    if (render_opaque_given())
+        cli_wrong("--mesh, --ground: the methods of 2018 have no opaque things (choose default or exact)");
+    cli_say("note: meshes of the scene are not shown by --method %s", method_names[method]);
+}
+
 int main(int argc, char **argv)
 {
     double started = now_ms();
@@ -387,6 +399,8 @@ int main(int argc, char **argv)
     check_command(&common, &frames);
     plan(&job, &common);
     cli_save_check(&common);
+    if (cli_save_wanted())
+        render_opaque_save_check();
     view_opened opened = view_open(job.path, &job.generator), other = {0};
     take_opened(&job, &opened);
     if (common.argument_count > 1) {
@@ -400,6 +414,9 @@ int main(int argc, char **argv)
         cli_picture_use_scene(opened.input.scene);
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
+    job.opaque = render_opaque_read(&opened.input);
+    job.options.light.opaque = job.opaque;
+    check_opaque(&job);
     cli_picture_apply(job.set, &job.view, &job.light);
     memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
     if (morph_path) {
@@ -419,7 +436,8 @@ int main(int argc, char **argv)
     view_job_free(&job);
     shape_morph_destroy(morph);
     shape_set_destroy(turned);
-    cli_picture_save_scene(&opened.input, &job.view, &job.light, NULL);
+    cli_picture_save_scene(&opened.input, &job.view, &job.light, render_opaque_save);
+    shape_opaque_destroy(job.opaque);
     cli_input_free(&opened.input);
     cli_input_free(&other.input);
     return cli_finish(&common);

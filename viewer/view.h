@@ -14,6 +14,7 @@ typedef struct view_job {
     const shape_set *other_set; /* of a second file, right of the divider; NULL */
     float divider;              /* a share of the width */
     const shape_morph *morph;   /* NULL: none */
+    shape_opaque *opaque;       /* what is opaque; NULL where nothing is */
     shape_set *moved;           /* as it is at the time that is drawn */
     shape_volume *volume;       /* of moved */
     shape_view view;            /* at time 0 */

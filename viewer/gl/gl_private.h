@@ -96,7 +96,8 @@ typedef struct gl_light {
     shape_lightgrid *grids;
     gl_box *boxes;
     float *cells; /* scratch, as large as the atlas */
-    GLuint a, b, seen;
+    float *shade; /* the sun's share that clouds let through, for what is opaque; NULL where nothing is */
+    GLuint a, b, seen, shade_texture;
 } gl_light;
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
@@ -135,6 +136,27 @@ typedef struct gl_grids {
     gl_baked *baked; /* of the default method */
 } gl_grids;
 
+/* --- surface.c, surface_shade.c: opaque things --- */
+
+typedef struct gl_surface {
+    GLuint program, shadow_program, array, buffer;
+    GLuint map, map_framebuffer; /* distances towards the sun, as a depth texture */
+    gl_target picture;           /* radiance and distance along the ray, of this sample */
+    GLuint clouds;               /* records of all clouds, in sight or not */
+    int count, solid_count;      /* triangles; those that are not the ground come first */
+    shape_dvec3 middle;          /* of these; what vertices are relative to */
+    float radius;
+    bool has_ground, mapped;
+    double ground;
+} gl_surface;
+
+/* The sun's share that clouds let through to each cell of all light grids, into light->shade. Needs no OpenGL. */
+shape_status gl_shade_make(const gl_order *order, gl_light *light, shape_error *error);
+/* Uploads the triangles of options.light.opaque, if there are any. */
+shape_status gl_surface_load(shape_gl_renderer *renderer, shape_error *error);
+shape_status gl_surface_resize(gl_surface *surface, int width, int height, shape_error *error);
+void gl_surface_free(gl_surface *surface);
+
 /* --- passes.c --- */
 
 /* One picture, or one sample of it. */
@@ -167,6 +189,7 @@ struct shape_gl_renderer {
     int fade_left;
     bool light_changed, refined;
     gl_preview preview;
+    gl_surface surface;
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
@@ -194,6 +217,13 @@ void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GL
 shape_status gl_refine(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
 /* Waits for the thread and throws away what it made. */
 void gl_refine_stop(shape_gl_renderer *renderer);
+
+/* --- surface.c, of a renderer --- */
+
+/* Draws what is opaque, for the passes that march up to it. */
+void gl_surface_draw(shape_gl_renderer *renderer, const gl_frame *frame);
+/* Tells a marching program where rays end; the program is in use. */
+void gl_set_surface(const shape_gl_renderer *renderer, GLuint program);
 
 /* --- preview.c: the default method --- */
 

@@ -81,6 +81,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);
     gl_preview_free(&renderer->preview);
+    gl_surface_free(&renderer->surface);
     glDeleteProgram(renderer->view_program);
     glDeleteProgram(renderer->tonemap);
     glDeleteProgram(renderer->density);
@@ -152,6 +153,8 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
         status = gl_scene_load(&renderer->scene, volume, error);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
         status = gl_volumes_load(&renderer->scene, volume, error);
+    if (!status && !is_paper(renderer))
+        status = gl_surface_load(renderer, error);
     renderer->costs.upload_ms = now_ms() - start;
     return status;
 }
@@ -162,6 +165,7 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     const shape_dvec3 *old = &renderer->light.sun, *sun = &light->sun;
     if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light)
         renderer->light_changed = true;
+    renderer->surface.mapped = false;
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
@@ -182,6 +186,8 @@ static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int 
     shape_status status = gl_target_make(&renderer->mean, width, height, true, error);
     if (!status && renderer->options.method == SHAPE_GL_DEFAULT)
         status = gl_preview_resize(&renderer->preview, width, height, error);
+    if (!status)
+        status = gl_surface_resize(&renderer->surface, width, height, error);
     for (int i = 0; i < 2 && !status && in_parts(renderer); i++)
         status = gl_target_make(&renderer->parts[i], width, height, false, error);
     renderer->width = width;
@@ -237,6 +243,7 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     gl_set_light(renderer, program);
     gl_set_camera(frame->view, frame->camera, frame->sample, program);
     gl_set_method(renderer, frame->view, program);
+    gl_set_surface(renderer, program);
     if (in_parts(renderer))
         return gl_draw_in_parts(renderer, frame->sample, error);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
@@ -274,6 +281,10 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     gl_frame frame = {view, &camera, &tiles, sample, moving, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
     status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, &camera, error);
+    if (!status) {
+        gl_light_place(renderer->grids.light, &renderer->scene, renderer->volume);
+        gl_surface_draw(renderer, &frame);
+    }
     if (!status && moving && renderer->fade_left > 0) {
         status = draw_by(renderer, &renderer->last_grids, &frame, error);
         frame.share = 1 - (float)renderer->fade_left / (GL_FADE_FRAMES + 1);

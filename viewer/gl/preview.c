@@ -78,6 +78,7 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     gl_set_tiles(pass->frame->tiles, program);
     gl_set_camera(pass->frame->view, pass->frame->camera, pass->frame->sample, program);
     gl_set_method(r, pass->frame->view, program);
+    gl_set_surface(r, program);
     gl_bind(program, "sky_picture", 14, GL_TEXTURE_2D, r->preview.sky_picture.textures[0]);
     gl_set_float(program, "pixel_stride", (float)stride);
     gl_set_float(program, "step_deep", pass->frame->moving ? 2.0f : 0.0f);
