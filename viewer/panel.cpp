@@ -252,6 +252,7 @@ void draw_judging(const view_panel_input &in)
     int heat = static_cast<int>(s.heat);
     if (choose("heat (T)", &heat, "none\0steps, white at 64\0fetches, white at 128\0"))
         s.heat = static_cast<view_heat>(heat);
+    ImGui::Checkbox("difference from the reference (R)", &s.difference);
     ImGui::PlotHistogram("##times", in.times, VIEW_TIMES, 0, "ms a picture", 0, FLT_MAX,
                          ImVec2(width - 30, 50));
     ImGui::Text("read %.0f, set %.0f, light %.0f, bake %.0f, draw %.0f ms", in.read_ms, in.volume_ms,
@@ -279,6 +280,7 @@ void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoCollapse);
     ImGui::PushItemWidth(width - 140);
+    ImGui::PushAllowKeyboardFocus(false); // Tab folds the panel, and must not enter a number on the way
     wish.undo = ImGui::SmallButton("undo");
     ImGui::SameLine();
     wish.redo = ImGui::SmallButton("redo");
@@ -289,6 +291,7 @@ void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 
     draw_time(in, wish);
     draw_judging(in);
     draw_files(wish);
+    ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     memory.covered[0] = window_box();
     ImGui::End();
@@ -309,6 +312,7 @@ void draw_help(const ImVec2 &screen)
         {"X", "two methods or files, split; drag the line"},
         {"B, P", "boxes, primitives as wires"},
         {"T", "steps, then fetches a pixel as heat"},
+        {"R", "difference from the reference: red brighter, blue darker"},
         {"Space", "time runs, stops"},
         {"Ctrl+Z", "undo; Ctrl+Shift+Z: redo"},
         {"Ctrl+C", "copy the commands that make what is seen"},
@@ -349,6 +353,8 @@ void draw_notes(const view_panel_input &in, const ImVec2 &screen)
                       in.state->samples, in.draw_ms, in.primitives, in.doing);
         y = draw_note(status, ImVec2(6, y), most, IM_COL32(220, 220, 220, 255));
     }
+    if (in.difference[0])
+        y = draw_note(in.difference, ImVec2(6, y), most, IM_COL32(220, 200, 160, 255));
     if (in.said[0])
         y = draw_note(in.said, ImVec2(6, y), most, IM_COL32(170, 230, 170, 255));
     if (in.error[0])
@@ -374,6 +380,28 @@ void draw_wires(const view_panel_input &in, const ImVec2 &screen)
     view_wires_free(&wires);
 }
 
+// The difference, over the pixels that it was taken from; of a split picture only left of the line.
+void draw_map(const view_panel_input &in, const ImVec2 &screen)
+{
+    int pixels[2] = {0, 0};
+    glfwGetFramebufferSize(glfwGetCurrentContext(), &pixels[0], &pixels[1]);
+    float part[2], border[2];
+    for (int i = 0; i < 2; i++) {
+        float shown = static_cast<float>(in.map_size[i] * in.map_scale);
+        part[i] = shown / static_cast<float>(pixels[i]);
+        border[i] = (1 - part[i]) / 2;
+    }
+    ImVec2 low(border[0] * screen.x, border[1] * screen.y),
+        high(low.x + part[0] * screen.x, low.y + part[1] * screen.y);
+    float line = in.state->split ? screen.x * in.state->divider : high.x,
+          right = line < high.x ? line : high.x;
+    if (right <= low.x)
+        return;
+    ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(in.map)),
+                                             low, ImVec2(right, high.y), ImVec2(0, 0),
+                                             ImVec2((right - low.x) / (high.x - low.x), 1));
+}
+
 // A path's last part.
 const char *bare(const char *path)
 {
@@ -387,6 +415,8 @@ void draw_picture(const view_panel_input &in, const ImVec2 &screen)
     if (in.texture)
         list->AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(in.texture)), ImVec2(0, 0), screen,
                        ImVec2(0, 1), ImVec2(1, 0));
+    if (in.map)
+        draw_map(in, screen);
     draw_wires(in, screen);
     if (!in.state->split)
         return;

@@ -19,6 +19,9 @@ typedef struct view_panel_input {
     const view_state *base;                   /* what a value is put back to */
     unsigned texture;                         /* the picture; 0: none yet */
     const char *title, *doing, *error, *said; /* texts, empty where there is nothing to say */
+    const char *difference;                   /* what is said of the difference from the reference */
+    unsigned map;                             /* of the difference; 0: none */
+    int map_size[2], map_scale;               /* its pixels; those of the picture that one of them covers */
     const char *other;                        /* the file of the right half; empty: the same */
     int samples;                              /* drawn so far */
     double draw_ms, light_ms, bake_ms, volume_ms, read_ms;

@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "engine.h"
+#include "reference.h"
 #include "shot.h"
 
 enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50 };
@@ -26,6 +27,8 @@ struct view_renderer {
     view_shared *wish_set, *wish_other;
     view_shot wish_shot;
     view_picture picture;
+    float *radiance; /* of the picture that is done, see view_renderer_take_radiance; NULL */
+    uint64_t radiance_of;
     /* The thread's own. */
     view_request now;
     view_shared *set, *other_set;
@@ -34,7 +37,9 @@ struct view_renderer {
     view_engine quick_other;        /* of another file */
     int sample;                     /* the next to draw */
     double changed;
-    bool drawn; /* this wish has been shown in some way */
+    uint64_t content;
+    uint64_t kept; /* the content whose radiance was kept last */
+    bool drawn;    /* this wish has been shown in some way */
     GLuint textures[TARGETS], framebuffers[TARGETS];
     int sizes[TARGETS][2], next_target;
     double volume_ms;
@@ -113,6 +118,7 @@ static void publish(view_renderer *r, const view_engine *left, const view_engine
     p->volume_ms = r->volume_ms;
     p->number++;
     p->request = r->now.number;
+    p->content = r->content;
     if (p->placed != r->scene->placed) {
         view_shared_drop(p->placed);
         p->placed = view_shared_keep(r->scene->placed);
@@ -295,6 +301,7 @@ static bool same_picture(const view_request *was, const view_request *is)
     other.number = is->number;
     other.state.exposure = is->state.exposure;
     other.state.heat = is->state.heat;
+    other.state.difference = is->state.difference;
     other.state.boxes = is->state.boxes;
     other.state.outlines = is->state.outlines;
     other.state.samples = is->state.samples;
@@ -325,11 +332,14 @@ static bool adopt(view_renderer *r, const view_request *wish, view_shared *set, 
     view_shared_drop(r->other_set);
     r->set = set;
     r->other_set = other;
+    if (is->difference && !was->difference)
+        r->kept = 0;
     memcpy(&r->now, wish, sizeof *wish);
     if (same) {
         publish(r, &r->full, is->split ? &r->other : NULL, wish->width, wish->height, r->picture.draw_ms);
         return true;
     }
+    r->content++;
     r->sample = 0;
     r->changed = now_ms();
     r->drawn = false;
@@ -413,6 +423,40 @@ static shape_status step(view_renderer *r, shape_error *error)
     return r->sample < s->samples ? draw_sample(r, error) : SHAPE_OK;
 }
 
+/* Keeps the radiance of a picture that is done. */
+static shape_status keep_radiance(view_renderer *r, shape_error *error)
+{
+    int width = r->now.width, height = r->now.height;
+    float *rgba = malloc((size_t)width * (size_t)height * 4 * sizeof *rgba);
+    r->kept = r->content; /* one try */
+    if (!rgba)
+        return shape_error_memory(error);
+    shape_status status = shape_gl_read(r->full.gl, rgba, error);
+    float *small = status ? NULL : view_reference_reduce(rgba, width, height);
+    free(rgba);
+    if (!small)
+        return status ? status : shape_error_memory(error);
+    pthread_mutex_lock(&r->mutex);
+    free(r->radiance);
+    r->radiance = small;
+    r->radiance_of = r->content;
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+    return SHAPE_OK;
+}
+
+float *view_renderer_take_radiance(view_renderer *r, uint64_t content)
+{
+    float *taken = NULL;
+    pthread_mutex_lock(&r->mutex);
+    if (r->radiance && r->radiance_of == content) {
+        taken = r->radiance;
+        r->radiance = NULL;
+    }
+    pthread_mutex_unlock(&r->mutex);
+    return taken;
+}
+
 static void *render_thread(void *context)
 {
     view_renderer *r = context;
@@ -422,6 +466,9 @@ static void *render_thread(void *context)
     bool broken = false;
     r->start.make_current(r->start.context, true);
     for (bool stop = !wish || !wanted; !stop;) {
+        bool done = r->scene && r->full.lit && !broken && is_idle(r);
+        if (done && r->now.state.difference && r->kept != r->content && keep_radiance(r, &error))
+            tell(r, error.text, true);
         pthread_mutex_lock(&r->mutex);
         bool idle = is_idle(r) || broken;
         if (idle && !r->fresh && !r->shoot && !r->stop) {
@@ -503,6 +550,7 @@ void view_renderer_stop(view_renderer *r)
     pthread_join(r->thread, NULL);
     view_shared_drop(r->wish_set);
     view_shared_drop(r->wish_other);
+    free(r->radiance);
     view_shared_drop(r->set);
     view_shared_drop(r->other_set);
     view_shared_drop(r->picture.placed);

@@ -34,6 +34,7 @@ typedef struct view_picture {
     double draw_ms, volume_ms;
     uint64_t number;  /* grows with each picture */
     uint64_t request; /* the number of the request that it shows */
+    uint64_t content; /* grows where what is to be drawn is another, and not only how it is shown */
     char text[512];   /* what went wrong, or what was written; empty */
     bool text_is_error;
     view_shared *placed; /* the set as it is seen; the caller drops it. NULL: nothing yet */
@@ -56,6 +57,9 @@ void view_renderer_ask(view_renderer *renderer, const view_request *request, vie
 /* Asks for a picture file besides: width x height, of all samples. `comment` is kept in the file. */
 void view_renderer_shoot(view_renderer *renderer, const char *path, int width, int height, bool alpha,
                          const char *comment);
+/* Where the state asks for the difference and the picture of that content is done: its radiance in the smaller size of
+ * reference.h, which the caller frees. NULL else. Once a content. */
+float *view_renderer_take_radiance(view_renderer *renderer, uint64_t content);
 /* What there is to show now. */
 void view_renderer_look(view_renderer *renderer, view_picture *picture);
 

@@ -41,6 +41,7 @@ typedef struct view_state {
     bool split, boxes, outlines; /* outlines: the primitives as wires */
     float divider;               /* of the split picture, a share of the width */
     view_heat heat;
+    bool difference; /* from the reference, as a map */
     view_generator generator;
     int cloud_count; /* of clouds */
     view_cloud clouds[VIEW_CLOUDS_MAX];

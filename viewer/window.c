@@ -184,6 +184,8 @@ static void draw(window_state *w)
     if (glfwGetTime() > w->said_until)
         w->said[0] = 0;
     const view_picture *p = &w->picture;
+    char difference[384];
+    window_describe_difference(w, difference, sizeof difference);
     const view_panel_input input = {
         .state = &w->state,
         .base = &w->base,
@@ -195,6 +197,10 @@ static void draw(window_state *w)
                  : p->text_is_error  ? p->text
                                      : "",
         .other = w->other_path,
+        .difference = difference,
+        .map = w->compared && w->difference.width ? w->map : 0,
+        .map_size = {w->difference.width, w->difference.height},
+        .map_scale = view_reference_scale(width, height),
         .said = w->said,
         .samples = p->samples,
         .draw_ms = p->draw_ms,
@@ -240,6 +246,7 @@ static void run(window_state *w)
             w->state.time += fmin(passed, 0.25);
         window_hear_news(w);
         look_at_picture(w);
+        window_compare(w);
         settle_camera(w, false);
         draw(w);
         settle_camera(w, false);
@@ -352,6 +359,7 @@ static shape_status show(window_state *w, shape_error *error)
         run(w);
     view_watch_stop(w->watch);
     view_watch_stop(w->other_watch);
+    window_stop_comparing(w);
     view_renderer_stop(w->renderer);
     view_history_destroy(w->history);
     view_shared_drop(w->set);

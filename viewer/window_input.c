@@ -93,6 +93,8 @@ static void on_key(GLFWwindow *window, int key, int code, int action, int modifi
         w->state.outlines = !w->state.outlines;
     else if (key == GLFW_KEY_T)
         w->state.heat = (view_heat)((w->state.heat + 1) % 3);
+    else if (key == GLFW_KEY_R)
+        w->state.difference = !w->state.difference;
     else if (key == GLFW_KEY_SPACE)
         w->playing = !w->playing;
     else if (key == GLFW_KEY_F12)

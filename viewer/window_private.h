@@ -6,6 +6,7 @@
 #include <GLFW/glfw3.h>
 
 #include "panel.h"
+#include "reference.h"
 #include "render.h"
 #include "view.h"
 #include "watch.h"
@@ -32,6 +33,10 @@ typedef struct window_state {
     double read_ms, last, said_until;
     bool open, help, playing, undo, redo, home, shoot, copy, ask_anew;
     size_t primitives;
+    view_reference *reference; /* NULL until the difference is wanted */
+    view_difference difference;
+    uint64_t compared;  /* the content of the picture that is compared; 0: none */
+    unsigned map;       /* the difference as a texture */
     void (*wake)(void); /* for threads with news */
 } window_state;
 
@@ -56,6 +61,14 @@ void window_ask_generator(window_state *w);
 /* The commands that make what is seen. */
 void window_make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room);
 void window_take_screenshot(window_state *w, const view_panel_wish *wish);
+
+/* --- window_difference.c --- */
+
+/* Compares the picture with the reference where that is wanted and the picture is done; begins anew where it changes. */
+void window_compare(window_state *w);
+/* What is to be said of it, into a text; empty where nothing is. */
+void window_describe_difference(const window_state *w, char *text, size_t room);
+void window_stop_comparing(window_state *w);
 
 /* --- window.c --- */
 
