@@ -1,10 +1,11 @@
-/* What is opened on the command line: a scene, a .neph, a grammar or a volume, told apart by what is in it. Mistakes end
- * the program, one line each. */
+/* What is opened on the command line: a scene, a .neph, a grammar or a volume, told apart by what is in it, or what a
+ * generator makes, of a mesh or of nothing. Mistakes end the program, one line each. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli_volume.h"
+#include "setting.h"
 #include "shape/file.h"
 #include "view.h"
 
@@ -21,7 +22,7 @@ shape_set *view_open_source(const char *path, const view_generator *generator)
     shape_error error;
     view_contents contents;
     static char mistakes[16384];
-    if (view_source_read(path, generator, &contents, mistakes, sizeof mistakes, &error))
+    if (view_source_read(path, generator, NULL, &contents, mistakes, sizeof mistakes, &error))
         fail_lines(mistakes);
     return contents.set;
 }
@@ -38,12 +39,20 @@ static view_opened open_volume(view_opened opened)
 view_opened view_open(const char *path, const view_generator *generator)
 {
     view_opened opened = {.input = {.path = path}, .used = *generator};
+    view_generator own = generator->which < 0 ? view_generator_of_path(path, generator->seed) : *generator;
     view_contents contents;
     cli_input *input = &opened.input;
     const char *shown = strcmp(path, "-") ? path : "standard input";
     unsigned char *bytes;
     shape_error error;
     static char mistakes[16384];
+    if (own.which >= 0 && strcmp(view_generator_program(&own), "neph-lsys")) {
+        if (view_source_read(path, &own, NULL, &contents, mistakes, sizeof mistakes, &error))
+            fail_lines(mistakes);
+        input->set = contents.set;
+        opened.used = contents.used;
+        return opened;
+    }
     if (cli_is_volume(path)) {
         input->set = cli_read_volume(path);
         return open_volume(opened);
@@ -59,11 +68,9 @@ view_opened view_open(const char *path, const view_generator *generator)
         input->set = cli_scene_make(input->scene, path);
         opened.scene = true;
     } else {
-        if (view_source_decode(path, bytes, input->size, generator, &contents, mistakes, sizeof mistakes,
-                               &error))
+        if (view_source_decode(path, bytes, input->size, &own, &contents, mistakes, sizeof mistakes, &error))
             fail_lines(mistakes);
         input->set = contents.set;
-        opened.grammar = contents.grammar;
         opened.used = contents.used;
         opened.used.seed = generator->seed;
     }

@@ -12,11 +12,13 @@
 #include "cli_volume.h"
 #include "shape/file.h"
 #include "render_opaque.h"
+#include "setting.h"
 #include "shape/image.h"
 #include "view.h"
 
 static bool headless, paper_lod;
-static int method;
+static int method, maker = -1;
+static const char *const makers[] = {"neph-gauss", "neph-meta"};
 static int64_t bench_frames, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
@@ -36,6 +38,8 @@ static const cli_option view_options[] = {
      "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
      "[off]",
      &error_given, true},
+    {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta",
+     "no IN: what neph-gauss or neph-meta makes, whose options are in the panel [IN]", NULL, true},
     {"split", 0, CLI_NUMBER, &split_share, 0, 1, "S",
      "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
@@ -98,7 +102,8 @@ static const cli_program program = {
     .name = "neph-view",
     .arguments = "IN [OTHER]",
     .about =
-        "Shows a .neph, a grammar, a scene (docs/scene.md) or a volume (.vdb, raw) in a window, or writes "
+        "Shows a .neph, a grammar, a mesh as neph-mesh makes a cloud of it, a scene (docs/scene.md) or a "
+        "volume (.vdb, raw) in a window, or writes "
         "pictures of it without "
         "one.\nA second file is shown beside it, right of a line that can be dragged, in the same light and "
         "view.\n"
@@ -112,8 +117,9 @@ static const cli_program program = {
                 "  neph-lsys castellanus.lsys | neph-view - --headless --size 1280x720 -o castellanus.png\n"
                 "  neph-view castellanus.neph --frames 0..99 --wind 1,0,0 --shear 0.02 -o frame.%04d.png\n"
                 "  neph-view before.neph after.neph\n"
+                "  neph-view --make gauss --seed 7\n"
                 "  neph-view castellanus.neph --bench 50\n",
-    .min_arguments = 1,
+    .min_arguments = 0, /* --make takes none */
     .max_arguments = 2,
     .groups = groups};
 
@@ -278,6 +284,10 @@ static void check_second(const cli_common *common)
 static void check_command(const cli_common *common, view_frames *frames)
 {
     shape_error error;
+    if (!common->argument_count && maker < 0)
+        cli_wrong("%s is missing (see --help)", program.arguments);
+    if (common->argument_count && maker >= 0)
+        cli_wrong("\"%s\": --make takes no file", common->arguments[0]);
     if (!headless && !bench_given && !frames_given && common->output_given)
         cli_wrong("-o needs --headless, --frames or --bench (a window writes no picture)");
     if (error_given && (!headless || bench_given || frames_given))
@@ -342,7 +352,8 @@ static void plan(view_job *job, const cli_common *common)
     job->options.seed = common->seed;
     job->options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     job->samples = (int)samples;
-    job->path = job->title = common->arguments[0];
+    job->path = common->argument_count ? common->arguments[0] : "";
+    job->title = common->argument_count ? job->path : makers[maker];
     job->other_path = common->argument_count > 1 ? common->arguments[1] : NULL;
     job->divider = (float)split_share;
     cli_given_text(cli_volume_options, job->opening, sizeof job->opening);
@@ -352,7 +363,8 @@ static void plan(view_job *job, const cli_common *common)
     job->morph_path = morph_path;
     job->time = moment_time;
     job->seed = common->seed;
-    job->generator.seed = common->seed;
+    job->generator =
+        maker < 0 ? view_generator_none(common->seed) : view_generator_named(makers[maker], common->seed);
     course.motion.seed = common->seed;
     course.day_runs = day_given;
     if (decay_given) {
@@ -369,10 +381,10 @@ static void take_opened(view_job *job, const view_opened *opened)
     job->set = opened->input.set;
     job->scene = opened->scene || opened->volume;
     job->volume_file = opened->volume;
-    job->grammar = opened->grammar;
     job->generator = opened->used;
-    if (job->grammar && cli_save_wanted())
-        cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
+    if (job->generator.which >= 0 && cli_save_wanted())
+        cli_wrong("--save-scene of what a generator makes is the generator's (%s --save-scene FILE)",
+                  view_generator_program(&job->generator));
 }
 
 /* Of a scene, it is known only now whether there are meshes. */
@@ -404,7 +416,8 @@ int main(int argc, char **argv)
     view_opened opened = view_open(job.path, &job.generator), other = {0};
     take_opened(&job, &opened);
     if (common.argument_count > 1) {
-        other = view_open(common.arguments[1], &job.generator);
+        view_generator none = view_generator_none(job.seed);
+        other = view_open(common.arguments[1], &none);
         job.other_set = other.input.set;
         job.other_watched = strcmp(job.other_path, "-") && !other.scene && !other.volume;
     }
@@ -420,7 +433,8 @@ int main(int argc, char **argv)
     cli_picture_apply(job.set, &job.view, &job.light);
     memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
     if (morph_path) {
-        turned = view_open_source(morph_path, &job.generator);
+        view_generator none = view_generator_none(job.seed);
+        turned = view_open_source(morph_path, &none);
         cli_check(shape_morph_create(job.set, turned, &morph, &error), &error);
         job.morph = morph;
     }

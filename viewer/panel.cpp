@@ -1,11 +1,14 @@
 // What lies over the picture, by Dear ImGui. It changes the state and says what was wished; it does no work of its own.
 #include "panel.h"
 
+#include "setting.h"
+
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -110,32 +113,81 @@ bool section(const char *name, bool open = false)
 
 // --- sections ---
 
-void draw_generator(const view_panel_input &in, view_panel_wish &wish)
+// One option's widget; whether it was changed. Drags go by a hundredth of the value a pixel.
+bool turn_setting(const view_setting_row &row, view_setting &setting)
 {
-    if (!in.grammar || !section("Grammar", true))
+    double *n = setting.number;
+    if (row.kind == VIEW_SETTING_FLAG) {
+        bool on = n[0] != 0;
+        bool changed = ImGui::Checkbox(row.name, &on);
+        n[0] = on;
+        return changed;
+    }
+    if (row.kind == VIEW_SETTING_CHOICE) {
+        char words[256];
+        int length = std::snprintf(words, sizeof words - 1, "%s", row.choices),
+            chosen = static_cast<int>(n[0]);
+        for (int i = 0; i < length; i++)
+            words[i] = words[i] == '|' ? '\0' : words[i];
+        words[length + 1] = '\0';
+        bool changed = ImGui::Combo(row.name, &chosen, words);
+        n[0] = chosen;
+        return changed;
+    }
+    double largest = 0;
+    for (int i = 0; i < row.count; i++)
+        largest = largest < n[i] ? n[i] : largest < -n[i] ? -n[i] : largest;
+    bool whole = row.kind == VIEW_SETTING_INTEGER, bounded = row.min != 0 || row.max != 0;
+    float speed = static_cast<float>(whole ? 0.1 + largest * 0.01 : (largest > 0 ? largest : 1) * 0.01);
+    double before[3] = {n[0], n[1], n[2]};
+    ImGui::DragScalarN(row.name, ImGuiDataType_Double, n, row.count, speed, bounded ? &row.min : nullptr,
+                       bounded ? &row.max : nullptr, whole ? "%.0f" : "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    for (int i = 0; i < row.count && whole; i++)
+        n[i] = std::floor(n[i] + 0.5);
+    if (row.range && n[0] > n[1])
+        n[n[0] != before[0] ? 0 : 1] = n[n[0] != before[0] ? 1 : 0];
+    return n[0] != before[0] || n[1] != before[1] || n[2] != before[2];
+}
+
+// What is not given is the generator's own choice, and grey.
+void draw_setting(const view_panel_input &in, const view_setting_row &row, int i)
+{
+    view_setting &setting = in.state->generator.settings[i];
+    const view_setting &start = in.base->generator.settings[i];
+    if (!setting.given)
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    bool was = setting.given;
+    if (turn_setting(row, setting))
+        setting.given = true;
+    bool reset = ImGui::IsItemClicked(ImGuiMouseButton_Right);
+    if (!was)
+        ImGui::PopStyleColor();
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("--%s: %s\nCtrl+click to type, right click to leave it to the generator", row.name,
+                          row.help);
+    if (!setting.given)
         return;
+    ImGui::SameLine();
+    ImGui::PushID(row.name);
+    reset = ImGui::SmallButton("x") || reset;
+    ImGui::PopID();
+    if (reset)
+        setting = view_setting{false, {start.number[0], start.number[1], start.number[2]}};
+}
+
+void draw_generator(const view_panel_input &in)
+{
     view_generator &g = in.state->generator;
-    static const int zero = 0;
-    const int file = in.base->generator.iterations, most = file > 6 ? 2 * file : 12;
-    float low = static_cast<float>(g.angle[0]), high = static_cast<float>(g.angle[1]);
+    const char *program = view_generator_program(&g);
+    view_setting_row row;
+    if (g.which < 0 || !section(program, true))
+        return;
     if (!in.watched)
-        ImGui::TextDisabled("not read again: standard input");
-    if (ImGui::SliderScalar("iterations", ImGuiDataType_S32, &g.iterations, &zero, &most, "%d",
-                            ImGuiSliderFlags_AlwaysClamp))
-        g.own_iterations = wish.generate = true;
-    if (ImGui::DragFloatRange2("angle", &low, &high, 0.5f, -180, 180, "%.4g deg", nullptr,
-                               ImGuiSliderFlags_AlwaysClamp)) {
-        g.angle[0] = static_cast<double>(low);
-        g.angle[1] = static_cast<double>(high);
-        g.own_angle = wish.generate = true;
-    }
+        ImGui::TextDisabled("not made again: standard input, or a morph");
+    for (int i = 0; view_setting_get_row(&g, i, &row); i++)
+        draw_setting(in, row, i);
     static const uint64_t one = 1;
-    if (ImGui::InputScalar("seed", ImGuiDataType_U64, &g.seed, &one))
-        wish.generate = true;
-    if ((g.own_iterations || g.own_angle) && ImGui::SmallButton("as the file says")) {
-        g.own_iterations = g.own_angle = false;
-        wish.generate = true;
-    }
+    ImGui::InputScalar("seed", ImGuiDataType_U64, &g.seed, &one);
 }
 
 int choose_cloud(const view_panel_input &in)
@@ -284,7 +336,7 @@ void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 
     wish.undo = ImGui::SmallButton("undo");
     ImGui::SameLine();
     wish.redo = ImGui::SmallButton("redo");
-    draw_generator(in, wish);
+    draw_generator(in);
     draw_light(in);
     draw_cloud(in);
     draw_camera(in, wish);

@@ -28,13 +28,13 @@ typedef struct view_panel_input {
     double steps, fetches; /* a pixel, of the picture */
     size_t primitives, all_clouds;
     const float *times; /* of the last VIEW_TIMES pictures [ms], the oldest first */
-    bool grammar, watched, open, help, playing;
+    bool watched, open, help, playing;
     const shape_set *placed; /* for the wires; NULL */
 } view_panel_input;
 
 /* What was wished in a frame. */
 typedef struct view_panel_wish {
-    bool undo, redo, home, copy, generate, play;
+    bool undo, redo, home, copy, play;
     bool shoot, shoot_alpha;
     int shoot_size[2];
     bool open_other;

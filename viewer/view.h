@@ -25,9 +25,9 @@ typedef struct view_job {
     const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
     const char *other_path;                /* NULL */
     bool other_watched;                    /* it is a file that can be watched */
-    view_generator generator;              /* of a grammar */
+    view_generator generator;              /* what makes the first file's cloud */
     char opening[1024];                    /* options that belong to the file, as they were given */
-    bool grammar, scene, alpha;
+    bool scene, alpha;
     bool volume_file; /* a .vdb or raw floats: nothing edits it */
     int samples;      /* of a picture without a window, and of a window at rest */
     double load_ms;
@@ -38,12 +38,12 @@ typedef struct view_job {
 /* input.c: what the command line opens. */
 typedef struct view_opened {
     cli_input input;     /* freed by cli_input_free */
-    view_generator used; /* of a grammar; else as given */
-    bool grammar, scene;
+    view_generator used; /* what made it */
+    bool scene;
     bool volume; /* a .vdb or raw floats */
 } view_opened;
 
-/* Reads a scene, a .neph, a grammar or a volume; mistakes end the program. */
+/* Reads a scene, a .neph, a grammar, a mesh or a volume; path "": what the generator makes. Mistakes end the program. */
 view_opened view_open(const char *path, const view_generator *generator);
 /* A .neph or a grammar alone. The caller destroys the set. */
 shape_set *view_open_source(const char *path, const view_generator *generator);

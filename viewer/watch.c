@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "run.h"
+
 enum { LOOK_MS = 20, REST_MS = 60, SILENT_MS = 1000 };
 
 /* What tells one version of a file from another. */
@@ -28,6 +30,7 @@ struct view_watch {
     char path[VIEW_PATH_MAX], folder[VIEW_PATH_MAX];
     const char *name; /* within path */
     void (*wake)(void);
+    view_run *run; /* of a generator's program */
     pthread_t thread;
     pthread_mutex_t mutex;
     int pipe[2]; /* a byte in it wakes the thread */
@@ -85,7 +88,15 @@ static void read_file(view_watch *watch, double since)
     view_generator generator = watch->generator;
     watch->busy = true;
     pthread_mutex_unlock(&watch->mutex);
-    view_source_read(watch->path, &generator, &news.contents, news.text, sizeof news.text, &error);
+    view_source_read(watch->path, &generator, watch->run, &news.contents, news.text, sizeof news.text,
+                     &error);
+    pthread_mutex_lock(&watch->mutex);
+    bool outdated = watch->asked || watch->stop; /* and perhaps broken off */
+    pthread_mutex_unlock(&watch->mutex);
+    if (outdated) {
+        shape_set_destroy(news.contents.set);
+        return;
+    }
     news.saved = since;
     news.milliseconds = now_ms() - since;
     publish(watch, &news);
@@ -184,7 +195,7 @@ static void *watch_thread(void *context)
     view_watch *watch = context;
     watch_state state;
     memset(&state, 0, sizeof state);
-    bool watched = strcmp(watch->path, "-") != 0;
+    bool watched = watch->path[0] && strcmp(watch->path, "-");
     state.there = watched && look(watch->path, &state.shown);
     state.seen = state.shown;
     for (;;) {
@@ -197,6 +208,8 @@ static void *watch_thread(void *context)
             return NULL;
         if (watched)
             attend(watch, &state, asked);
+        else if (asked && !watch->path[0])
+            read_file(watch, now_ms());
     }
 }
 
@@ -235,12 +248,14 @@ view_watch *view_watch_start(const char *path, const view_generator *generator, 
     watch->generator = *generator;
     watch->wake = wake;
     watch->notify = -1;
-    if (pipe(watch->pipe)) {
+    watch->run = view_run_create();
+    if (!watch->run || pipe(watch->pipe)) {
         shape_error_set(error, SHAPE_ERROR_SYSTEM, "no pipe: %s", strerror(errno));
+        view_run_destroy(watch->run);
         free(watch);
         return NULL;
     }
-    if (strcmp(path, "-"))
+    if (path[0] && strcmp(path, "-"))
         open_notify(watch);
     pthread_mutex_init(&watch->mutex, NULL);
     int failed = pthread_create(&watch->thread, NULL, watch_thread, watch);
@@ -252,6 +267,7 @@ view_watch *view_watch_start(const char *path, const view_generator *generator, 
     close(watch->pipe[0]);
     close(watch->pipe[1]);
     pthread_mutex_destroy(&watch->mutex);
+    view_run_destroy(watch->run);
     free(watch);
     return NULL;
 }
@@ -269,6 +285,7 @@ void view_watch_stop(view_watch *watch)
     pthread_mutex_lock(&watch->mutex);
     watch->stop = true;
     pthread_mutex_unlock(&watch->mutex);
+    view_run_cancel(watch->run);
     wake_thread(watch);
     pthread_join(watch->thread, NULL);
     if (watch->fresh)
@@ -278,6 +295,7 @@ void view_watch_stop(view_watch *watch)
     close(watch->pipe[0]);
     close(watch->pipe[1]);
     pthread_mutex_destroy(&watch->mutex);
+    view_run_destroy(watch->run);
     free(watch);
 }
 
@@ -287,6 +305,7 @@ void view_watch_ask(view_watch *watch, const view_generator *generator)
     watch->generator = *generator;
     watch->asked = watch->busy = true;
     pthread_mutex_unlock(&watch->mutex);
+    view_run_cancel(watch->run); /* what is being made is of older settings */
     wake_thread(watch);
 }
 

@@ -16,11 +16,11 @@ typedef struct view_news {
 } view_news;
 
 /* Begins to watch. `wake` is called from the thread when there is news. Standard input ("-") is read once and not
- * watched. NULL and *error: threads or memory are out. */
+ * watched; nor is "", which stands for a generator without a file. NULL and *error: threads or memory are out. */
 view_watch *view_watch_start(const char *path, const view_generator *generator, void (*wake)(void),
                              shape_error *error);
 void view_watch_stop(view_watch *watch); /* NULL is allowed */
-/* Makes a grammar's cloud anew by other settings; not that of standard input. */
+/* Makes a generator's cloud anew by other settings, breaking off what is being made; not that of standard input. */
 void view_watch_ask(view_watch *watch, const view_generator *generator);
 /* Takes the newest news; false where there is none since the last time. */
 bool view_watch_take(view_watch *watch, view_news *news);

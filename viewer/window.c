@@ -211,7 +211,6 @@ static void draw(window_state *w)
         .primitives = w->primitives,
         .all_clouds = view_shared_set(w->set)->cloud_count,
         .times = w->times,
-        .grammar = w->job->grammar,
         .watched = w->watch != NULL,
         .open = w->open,
         .help = w->help,
@@ -311,7 +310,8 @@ static shape_status start_other(window_state *w, shape_error *error)
         status = window_take_other(w, copy, error);
     snprintf(w->other_path, sizeof w->other_path, "%s", job->other_path);
     if (!status && job->other_watched) {
-        w->other_watch = view_watch_start(job->other_path, &job->generator, wake, error);
+        view_generator generator = view_generator_of_path(job->other_path, job->seed);
+        w->other_watch = view_watch_start(job->other_path, &generator, wake, error);
         status = w->other_watch ? SHAPE_OK : error->status;
     }
     return status;

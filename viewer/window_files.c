@@ -37,9 +37,10 @@ void window_open_other(window_state *w, const char *path)
     snprintf(w->other_path, sizeof w->other_path, "%s", path);
     if (!path[0])
         return;
-    w->other_watch = view_watch_start(path, &w->job->generator, w->wake, &error);
+    view_generator generator = view_generator_of_path(path, w->job->seed);
+    w->other_watch = view_watch_start(path, &generator, w->wake, &error);
     if (w->other_watch)
-        view_watch_ask(w->other_watch, &w->job->generator);
+        view_watch_ask(w->other_watch, &generator);
     else
         snprintf(w->other_error, sizeof w->other_error, "%s", error.text);
     w->state.split = true;
@@ -102,7 +103,6 @@ void window_make_command(const window_state *w, const int size[2], bool alpha, c
     const view_command command = {.path = w->job->path,
                                   .morph = w->job->morph_path,
                                   .opening = w->job->opening,
-                                  .grammar = w->job->grammar,
                                   .alpha = alpha,
                                   .paper_lod = w->job->options.paper_lod,
                                   .volume = w->job->volume_file,
@@ -116,7 +116,7 @@ void window_make_command(const window_state *w, const int size[2], bool alpha, c
 void window_take_screenshot(window_state *w, const view_panel_wish *wish)
 {
     char name[SHAPE_NAME_MAX + 1], path[SHAPE_NAME_MAX + 32], command[8192];
-    cli_bare_name(w->job->path, "cloud", name);
+    cli_bare_name(w->job->path[0] ? w->job->path : w->job->title, "cloud", name);
     for (int i = 1; i < 10000; i++) {
         snprintf(path, sizeof path, "%s-%04d.png", name, i);
         if (access(path, F_OK))
@@ -131,11 +131,7 @@ void window_take_screenshot(window_state *w, const view_panel_wish *wish)
 
 void window_ask_generator(window_state *w)
 {
-    const view_generator *is = &w->state.generator, *was = &w->asked.generator;
-    bool other = is->seed != was->seed || is->own_iterations != was->own_iterations ||
-                 is->own_angle != was->own_angle ||
-                 (is->own_iterations && is->iterations != was->iterations) ||
-                 (is->own_angle && memcmp(is->angle, was->angle, sizeof is->angle));
-    if (other && w->watch && w->job->grammar)
-        view_watch_ask(w->watch, is);
+    if (w->watch && w->state.generator.which >= 0 &&
+        !view_generator_same(&w->state.generator, &w->asked.generator))
+        view_watch_ask(w->watch, &w->state.generator);
 }

@@ -8,6 +8,7 @@
 #include "panel.h"
 #include "reference.h"
 #include "render.h"
+#include "setting.h"
 #include "view.h"
 #include "watch.h"
 
