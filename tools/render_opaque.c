@@ -46,6 +46,27 @@ static void add_to_scene(shape_scene *scene, int i)
     read_colour(i, mesh->albedo);
 }
 
+shape_scene *render_opaque_list(void)
+{
+    shape_error error;
+    shape_scene *list = shape_scene_create(&error);
+    if (!list)
+        cli_fail("%s", error.text);
+    for (int i = 0; i < meshes.count; i++) {
+        add_to_scene(list, i);
+        cli_check(shape_scene_set_text(&list->meshes[i].file, meshes.text[i], &error), &error);
+    }
+    return list;
+}
+
+bool render_opaque_ground(double *height, float albedo[3])
+{
+    for (int c = 0; c < 3; c++)
+        albedo[c] = (float)ground_colour[c];
+    *height = ground;
+    return ground_given;
+}
+
 shape_opaque *render_opaque_read(const cli_input *input)
 {
     shape_error error;
@@ -67,10 +88,10 @@ shape_opaque *render_opaque_read(const cli_input *input)
         opaque_scene_add_file(opaque, &own->meshes[i], meshes.text[i]);
     }
     shape_scene_destroy(own);
-    if (ground_given) {
-        const float albedo[3] = {(float)ground_colour[0], (float)ground_colour[1], (float)ground_colour[2]};
-        cli_check(shape_opaque_add_ground(opaque, ground, albedo, &error), &error);
-    }
+    double height;
+    float albedo[3];
+    if (render_opaque_ground(&height, albedo))
+        cli_check(shape_opaque_add_ground(opaque, height, albedo, &error), &error);
     cli_check(shape_opaque_finish(opaque, &error), &error);
     return opaque;
 }

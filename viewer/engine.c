@@ -58,6 +58,7 @@ void view_engine_free(view_engine *e)
     bool quick = e->quick;
     shape_gl_destroy(e->gl);
     view_scene_drop(e->scene);
+    view_things_drop(e->things);
     memset(e, 0, sizeof *e);
     e->quick = quick;
 }
@@ -67,6 +68,7 @@ static shape_status create(view_engine *e, const shape_gl_options *usual, shape_
     shape_gl_options options = *usual;
     options.method = (shape_gl_method)e->method;
     options.light.resolution = e->resolution;
+    options.light.opaque = view_things_get(e->things);
     options.background = !e->quick;
     if (e->quick)
         options.bake_voxels = QUICK_VOXELS;
@@ -74,16 +76,18 @@ static shape_status create(view_engine *e, const shape_gl_options *usual, shape_
 }
 
 shape_status view_engine_light(view_engine *e, const shape_gl_options *usual, const view_state *state,
-                               int method, view_scene *scene, shape_error *error)
+                               int method, view_scene *scene, view_things *things, shape_error *error)
 {
     int resolution = e->quick ? QUICK_LIGHT : state->light_grid;
     shape_status status = SHAPE_OK;
-    if (e->gl && (e->method != method || e->resolution != resolution))
+    if (e->gl && (e->method != method || e->resolution != resolution || e->things != things))
         view_engine_free(e);
     if (e->lit)
         return SHAPE_OK;
     e->method = method;
     e->resolution = resolution;
+    if (!e->gl && !e->things)
+        e->things = view_things_keep(things);
     if (!e->gl)
         status = create(e, usual, error);
     shape_light light = view_state_light(state);

@@ -3,6 +3,7 @@
 #define NEPHELE_VIEW_ENGINE_H
 
 #include "render.h"
+#include "things.h"
 
 /* A set as it is seen, ready to be drawn. It goes with the last engine that has it. */
 typedef struct view_scene {
@@ -20,6 +21,7 @@ void view_scene_drop(view_scene *scene); /* NULL is allowed */
 typedef struct view_engine {
     shape_gl_renderer *gl;
     view_scene *scene; /* what it has loaded */
+    view_things *things;
     int method, resolution;
     bool quick;      /* coarse grids, waited for; else fine ones, made on a thread by the default method */
     bool lit;        /* the scene is the present one, under the present light */
@@ -28,7 +30,7 @@ typedef struct view_engine {
 
 /* Makes it ready for a scene under the state's light. */
 shape_status view_engine_light(view_engine *engine, const shape_gl_options *usual, const view_state *state,
-                               int method, view_scene *scene, shape_error *error);
+                               int method, view_scene *scene, view_things *things, shape_error *error);
 /* Draws a sample; below 0: a picture of a view that moves. */
 shape_status view_engine_draw(view_engine *engine, const view_state *state, int width, int height, int sample,
                               shape_error *error);

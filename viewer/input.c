@@ -22,7 +22,7 @@ shape_set *view_open_source(const char *path, const view_generator *generator)
     shape_error error;
     view_contents contents;
     static char mistakes[16384];
-    if (view_source_read(path, generator, NULL, &contents, mistakes, sizeof mistakes, &error))
+    if (view_source_read(path, generator, NULL, NULL, false, &contents, mistakes, sizeof mistakes, &error))
         fail_lines(mistakes);
     return contents.set;
 }
@@ -47,7 +47,7 @@ view_opened view_open(const char *path, const view_generator *generator)
     shape_error error;
     static char mistakes[16384];
     if (own.which >= 0 && strcmp(view_generator_program(&own), "neph-lsys")) {
-        if (view_source_read(path, &own, NULL, &contents, mistakes, sizeof mistakes, &error))
+        if (view_source_read(path, &own, NULL, NULL, false, &contents, mistakes, sizeof mistakes, &error))
             fail_lines(mistakes);
         input->set = contents.set;
         opened.used = contents.used;

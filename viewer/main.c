@@ -419,7 +419,7 @@ int main(int argc, char **argv)
         view_generator none = view_generator_none(job.seed);
         other = view_open(common.arguments[1], &none);
         job.other_set = other.input.set;
-        job.other_watched = strcmp(job.other_path, "-") && !other.scene && !other.volume;
+        job.other_watched = strcmp(job.other_path, "-") && !other.volume;
     }
     if (!opened.volume && !other.volume)
         cli_refuse_volume_options();
@@ -429,6 +429,10 @@ int main(int argc, char **argv)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     job.opaque = render_opaque_read(&opened.input);
     job.options.light.opaque = job.opaque;
+    shape_scene *list = render_opaque_list();
+    job.more.list = list;
+    job.more.has_ground = render_opaque_ground(&job.more.height, job.more.ground_albedo);
+    job.scene_read = opened.input.scene;
     check_opaque(&job);
     cli_picture_apply(job.set, &job.view, &job.light);
     memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
@@ -452,6 +456,7 @@ int main(int argc, char **argv)
     shape_set_destroy(turned);
     cli_picture_save_scene(&opened.input, &job.view, &job.light, render_opaque_save);
     shape_opaque_destroy(job.opaque);
+    shape_scene_destroy(list);
     cli_input_free(&opened.input);
     cli_input_free(&other.input);
     return cli_finish(&common);

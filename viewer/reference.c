@@ -190,7 +190,7 @@ static shape_status trace(view_reference *r, comparison *c, const shape_tracer *
 {
     shape_pathtrace_options options = shape_pathtrace_defaults();
     options.samples = PATHS_A_PASS;
-    options.opaque = c->job->opaque;
+    options.opaque = view_things_get(c->job->things);
     options.progress = goes_on;
     options.progress_context = r;
     for (uint64_t pass = 0; c->paths < VIEW_REFERENCE_PATHS; pass++) {
@@ -231,6 +231,7 @@ static void compare(view_reference *r, const view_reference_job *job)
 static void free_job(view_reference_job *job)
 {
     view_shared_drop(job->placed);
+    view_things_drop(job->things);
     free(job->radiance);
     memset(job, 0, sizeof *job);
 }
@@ -309,6 +310,7 @@ void view_reference_ask(view_reference *r, const view_reference_job *job)
     give_up(r);
     r->next = *job;
     view_shared_keep(r->next.placed);
+    view_things_keep(r->next.things);
     r->fresh = true;
     pthread_cond_signal(&r->asked);
     pthread_mutex_unlock(&r->mutex);

@@ -12,9 +12,9 @@ typedef struct view_reference view_reference;
 
 /* What is to be compared. */
 typedef struct view_reference_job {
-    view_shared *placed;        /* kept */
-    const shape_opaque *opaque; /* outlives the thread; NULL */
-    shape_view view;            /* of the smaller size, from view_reference_view */
+    view_shared *placed; /* kept */
+    view_things *things; /* kept; NULL */
+    shape_view view;     /* of the smaller size, from view_reference_view */
     shape_light light;
     uint64_t seed, number; /* number: the caller's */
     float *

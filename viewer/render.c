@@ -24,14 +24,14 @@ struct view_renderer {
     /* Under the mutex. */
     bool stop, fresh, shoot;
     view_request wish;
-    view_shared *wish_set, *wish_other;
+    view_shown wished;
     view_shot wish_shot;
     view_picture picture;
     float *radiance; /* of the picture that is done, see view_renderer_take_radiance; NULL */
     uint64_t radiance_of;
     /* The thread's own. */
     view_request now;
-    view_shared *set, *other_set;
+    view_shown shown;
     view_scene *scene, *other_scene;
     view_engine quick, full, other; /* other: the right half */
     view_engine quick_other;        /* of another file */
@@ -128,6 +128,14 @@ static void publish(view_renderer *r, const view_engine *left, const view_engine
     r->start.wake();
 }
 
+static void drop_shown(view_shown *shown)
+{
+    view_shared_drop(shown->set);
+    view_shared_drop(shown->other);
+    view_things_drop(shown->things);
+    memset(shown, 0, sizeof *shown);
+}
+
 /* The scene of the right half: another file, or the same. */
 static view_scene *right_scene(const view_renderer *r)
 {
@@ -143,20 +151,22 @@ static bool two_files(const view_renderer *r)
 static shape_status light_full(view_renderer *r, shape_error *error)
 {
     const view_state *s = &r->now.state;
-    shape_status status = view_engine_light(&r->full, &r->start.options, s, s->method, r->scene, error);
+    shape_status status =
+        view_engine_light(&r->full, &r->start.options, s, s->method, r->scene, r->shown.things, error);
     if (!status && s->split)
-        status = view_engine_light(&r->other, &r->start.options, s, s->other_method, right_scene(r), error);
+        status = view_engine_light(&r->other, &r->start.options, s, s->other_method, right_scene(r),
+                                   r->shown.things, error);
     return status;
 }
 
 static shape_status light_quick(view_renderer *r, shape_error *error)
 {
     const view_state *s = &r->now.state;
-    shape_status status =
-        view_engine_light(&r->quick, &r->start.options, s, SHAPE_GL_DEFAULT, r->scene, error);
+    shape_status status = view_engine_light(&r->quick, &r->start.options, s, SHAPE_GL_DEFAULT, r->scene,
+                                            r->shown.things, error);
     if (!status && two_files(r))
-        status =
-            view_engine_light(&r->quick_other, &r->start.options, s, SHAPE_GL_DEFAULT, r->other_scene, error);
+        status = view_engine_light(&r->quick_other, &r->start.options, s, SHAPE_GL_DEFAULT, r->other_scene,
+                                   r->shown.things, error);
     return status;
 }
 
@@ -276,9 +286,9 @@ static shape_status make_scenes(view_renderer *r, shape_error *error)
 {
     double start = now_ms();
     view_scene *next = NULL, *other = NULL;
-    shape_status status = view_scene_make(&r->now.state, r->set, true, r->start.morph, &next, error);
-    if (!status && r->other_set)
-        status = view_scene_make(&r->now.state, r->other_set, false, NULL, &other, error);
+    shape_status status = view_scene_make(&r->now.state, r->shown.set, true, r->start.morph, &next, error);
+    if (!status && r->shown.other)
+        status = view_scene_make(&r->now.state, r->shown.other, false, NULL, &other, error);
     if (status) {
         view_scene_drop(next);
         return status;
@@ -317,21 +327,19 @@ static bool moves_in_time(const view_renderer *r, const view_state *s)
 }
 
 /* Takes a wish over; false where nothing can be drawn. */
-static bool adopt(view_renderer *r, const view_request *wish, view_shared *set, view_shared *other)
+static bool adopt(view_renderer *r, const view_request *wish, const view_shown *shown)
 {
     view_state *was = &r->now.state;
     const view_state *is = &wish->state;
     bool other_time = was->time != is->time && moves_in_time(r, is);
-    bool clouds =
-        !r->scene || set != r->set || other != r->other_set || other_time || !view_state_same_clouds(was, is);
+    bool clouds = !r->scene || shown->set != r->shown.set || shown->other != r->shown.other ||
+                  shown->things != r->shown.things || other_time || !view_state_same_clouds(was, is);
     bool light = clouds || !view_state_same_light(was, is);
     bool grid = was->light_grid != is->light_grid || was->method != is->method ||
                 was->other_method != is->other_method || was->split != is->split;
     bool same = !clouds && r->drawn && r->full.lit && r->sample && same_picture(&r->now, wish);
-    view_shared_drop(r->set);
-    view_shared_drop(r->other_set);
-    r->set = set;
-    r->other_set = other;
+    drop_shown(&r->shown);
+    r->shown = *shown;
     if (is->difference && !was->difference)
         r->kept = 0;
     memcpy(&r->now, wish, sizeof *wish);
@@ -362,8 +370,10 @@ static void take_shot(view_renderer *r, const view_shot *s)
 {
     shape_error error;
     char text[512];
+    shape_gl_options options = r->start.options;
+    options.light.opaque = view_things_get(r->shown.things);
     say(r, "screenshot");
-    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &r->start.options, &error);
+    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &options, &error);
     if (status)
         snprintf(text, sizeof text, "screenshot: %.480s", error.text);
     else
@@ -482,24 +492,22 @@ static void *render_thread(void *context)
             sleep_until(r, REST_MS - (now_ms() - r->changed) + 1);
         stop = r->stop;
         bool fresh = r->fresh, shoot = r->shoot;
-        view_shared *set = NULL, *other = NULL;
+        view_shown shown = {0};
         if (fresh) {
             memcpy(wish, &r->wish, sizeof *wish);
-            set = r->wish_set;
-            other = r->wish_other;
-            r->wish_set = r->wish_other = NULL;
+            shown = r->wished;
+            memset(&r->wished, 0, sizeof r->wished);
         }
         if (shoot)
             memcpy(wanted, &r->wish_shot, sizeof *wanted);
         r->fresh = r->shoot = false;
         pthread_mutex_unlock(&r->mutex);
         if (stop) {
-            view_shared_drop(set);
-            view_shared_drop(other);
+            drop_shown(&shown);
             break;
         }
         if (fresh)
-            broken = !adopt(r, wish, set, other);
+            broken = !adopt(r, wish, &shown);
         if (shoot && r->scene)
             take_shot(r, wanted);
         if (!broken && !is_idle(r) && step(r, &error)) {
@@ -548,11 +556,9 @@ void view_renderer_stop(view_renderer *r)
     pthread_cond_signal(&r->asked);
     pthread_mutex_unlock(&r->mutex);
     pthread_join(r->thread, NULL);
-    view_shared_drop(r->wish_set);
-    view_shared_drop(r->wish_other);
+    drop_shown(&r->wished);
     free(r->radiance);
-    view_shared_drop(r->set);
-    view_shared_drop(r->other_set);
+    drop_shown(&r->shown);
     view_shared_drop(r->picture.placed);
     view_scene_drop(r->scene);
     view_scene_drop(r->other_scene);
@@ -561,13 +567,13 @@ void view_renderer_stop(view_renderer *r)
     free(r);
 }
 
-void view_renderer_ask(view_renderer *r, const view_request *request, view_shared *set, view_shared *other)
+void view_renderer_ask(view_renderer *r, const view_request *request, const view_shown *shown)
 {
     pthread_mutex_lock(&r->mutex);
-    view_shared_drop(r->wish_set);
-    view_shared_drop(r->wish_other);
-    r->wish_set = view_shared_keep(set);
-    r->wish_other = view_shared_keep(other);
+    drop_shown(&r->wished);
+    r->wished.set = view_shared_keep(shown->set);
+    r->wished.other = view_shared_keep(shown->other);
+    r->wished.things = view_things_keep(shown->things);
     memcpy(&r->wish, request, sizeof *request);
     r->fresh = true;
     r->picture.done = false;

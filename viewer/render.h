@@ -5,6 +5,7 @@
 
 #include "shape_gl.h"
 #include "state.h"
+#include "things.h"
 
 /* A set that several threads look at; it goes with the last of them. */
 typedef struct view_shared view_shared;
@@ -50,10 +51,14 @@ typedef struct view_render_start {
 
 view_renderer *view_renderer_start(const view_render_start *start, shape_error *error);
 void view_renderer_stop(view_renderer *renderer); /* NULL is allowed */
-/* Asks for a picture; the newest wish counts. Both sets are kept; other: the file of the right half, or NULL for the
- * same in both. */
-void view_renderer_ask(view_renderer *renderer, const view_request *request, view_shared *set,
-                       view_shared *other);
+/* What is shown. */
+typedef struct view_shown {
+    view_shared *set, *other; /* other: the file of the right half, or NULL for the same in both */
+    view_things *things;      /* what is opaque in both; NULL */
+} view_shown;
+
+/* Asks for a picture; the newest wish counts. What is shown is kept. */
+void view_renderer_ask(view_renderer *renderer, const view_request *request, const view_shown *shown);
 /* Asks for a picture file besides: width x height, of all samples. `comment` is kept in the file. */
 void view_renderer_shoot(view_renderer *renderer, const char *path, int width, int height, bool alpha,
                          const char *comment);

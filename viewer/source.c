@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli_scene.h"
 #include "run.h"
 #include "setting.h"
 #include "shape/file.h"
@@ -185,12 +185,44 @@ static shape_status run_generator(const char *path, view_run *run, view_contents
     return status;
 }
 
-shape_status view_source_read(const char *path, const view_generator *generator, view_run *run,
-                              view_contents *contents, char *mistakes, size_t room, shape_error *error)
+/* A scene: light, camera and things are read here, its clouds made by a program that can be ended, and that may end by
+ * a mistake in any of its files. */
+static shape_status read_scene(const char *path, const unsigned char *bytes, size_t size, view_run *run,
+                               view_contents *contents, char *mistakes, size_t room, shape_error *error)
+{
+    char *arguments[] = {(char *)"neph-edit", (char *)"-q", NULL, NULL, NULL, NULL};
+    size_t count = 2, made_size;
+    unsigned char *made;
+    if (cli_outside_allowed())
+        arguments[count++] = (char *)"--allow-outside";
+    arguments[count++] = (char *)"--";
+    arguments[count] = (char *)path;
+    contents->used = view_generator_none(contents->used.seed);
+    shape_status status = shape_scene_decode(bytes, size, path, &contents->scene, error);
+    if (!status)
+        status = view_run_program(run, arguments, &made, &made_size, mistakes, room, error);
+    if (status)
+        return status;
+    status = shape_neph_decode(made, made_size, &contents->set, error);
+    free(made);
+    return status;
+}
+
+void view_contents_free(view_contents *contents)
+{
+    shape_set_destroy(contents->set);
+    shape_scene_destroy(contents->scene);
+    shape_opaque_destroy(contents->opaque);
+    contents->set = NULL;
+    contents->scene = NULL;
+    contents->opaque = NULL;
+}
+
+static shape_status read_any(const char *path, const view_generator *generator, view_run *run,
+                             view_contents *contents, char *mistakes, size_t room, shape_error *error)
 {
     unsigned char *bytes;
     size_t size;
-    memset(contents, 0, sizeof *contents);
     contents->used = *generator;
     if (generator->which < 0)
         contents->used = view_generator_of_path(path, generator->seed);
@@ -202,7 +234,31 @@ shape_status view_source_read(const char *path, const view_generator *generator,
         snprintf(mistakes, room, "%s", error->text);
         return status;
     }
-    status = view_source_decode(path, bytes, size, generator, contents, mistakes, room, error);
+    if (shape_scene_is(bytes, size))
+        status = read_scene(path, bytes, size, run, contents, mistakes, room, error);
+    else
+        status = view_source_decode(path, bytes, size, generator, contents, mistakes, room, error);
     free(bytes);
+    return status;
+}
+
+shape_status view_source_read(const char *path, const view_generator *generator, view_run *run,
+                              const view_more_things *more, bool things, view_contents *contents,
+                              char *mistakes, size_t room, shape_error *error)
+{
+    static const view_more_things none;
+    memset(contents, 0, sizeof *contents);
+    mistakes[0] = 0;
+    shape_status status = read_any(path, generator, run, contents, mistakes, room, error);
+    if (!status && (things || contents->scene)) {
+        status = view_things_read(contents->scene, path, cli_outside_allowed(), more ? more : &none,
+                                  &contents->opaque, error);
+        contents->things_read = true;
+    }
+    if (status) {
+        view_contents_free(contents);
+        if (!mistakes[0])
+            snprintf(mistakes, room, "%s", error->text);
+    }
     return status;
 }

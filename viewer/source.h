@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include "shape/set.h"
+#include "things.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -35,13 +36,20 @@ typedef struct view_run view_run;
 typedef struct view_contents {
     shape_set *set;      /* the caller destroys it */
     view_generator used; /* what made it, settings of a grammar's file included */
+    shape_scene *scene;  /* where it is one, for its light and camera; the caller destroys it. NULL else */
+    bool things_read;
+    shape_opaque *opaque; /* where things were read: what is opaque, or NULL; the caller destroys it */
 } view_contents;
 
 /* Reads a .neph, or a grammar and derives it as neph-lsys does; or runs the generator's program, on a mesh or on nothing
- * (path ""). path "-": standard input. What it is shows in the name, else in the bytes. run may be NULL. Mistakes of a grammar: "path:line:column: text", all of them (as far as there is room), one a line. */
+ * (path ""). path "-": standard input. What it is shows in the name, else in the bytes. run may be NULL. A scene's clouds
+ * are made by the program neph-edit. more: what else is opaque, or NULL; things: whether what is opaque is to be read,
+ * as it always is with a scene.Mistakes of a grammar: "path:line:column: text", all of them (as far as there is room), one a line. */
 shape_status view_source_read(const char *path, const view_generator *generator, view_run *run,
-                              view_contents *contents, char *mistakes, size_t room, shape_error *error);
-/* The same of a file's bytes that have been read already. */
+                              const view_more_things *more, bool things, view_contents *contents,
+                              char *mistakes, size_t room, shape_error *error);
+void view_contents_free(view_contents *contents);
+/* The same of a file's bytes that have been read already, a .neph's or a grammar's. */
 shape_status view_source_decode(const char *path, const unsigned char *bytes, size_t size,
                                 const view_generator *generator, view_contents *contents, char *mistakes,
                                 size_t room, shape_error *error);

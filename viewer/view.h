@@ -10,15 +10,17 @@
 
 /* What the command line asked for. */
 typedef struct view_job {
-    const shape_set *set;       /* at rest */
-    const shape_set *other_set; /* of a second file, right of the divider; NULL */
-    float divider;              /* a share of the width */
-    const shape_morph *morph;   /* NULL: none */
-    shape_opaque *opaque;       /* what is opaque; NULL where nothing is */
-    shape_set *moved;           /* as it is at the time that is drawn */
-    shape_volume *volume;       /* of moved */
-    shape_view view;            /* at time 0 */
-    shape_light light;          /* at time 0 */
+    const shape_set *set;          /* at rest */
+    const shape_set *other_set;    /* of a second file, right of the divider; NULL */
+    float divider;                 /* a share of the width */
+    const shape_morph *morph;      /* NULL: none */
+    shape_opaque *opaque;          /* what is opaque; NULL where nothing is */
+    view_more_things more;         /* of what is opaque, that of the command line, for reading it again */
+    const shape_scene *scene_read; /* NULL */
+    shape_set *moved;              /* as it is at the time that is drawn */
+    shape_volume *volume;          /* of moved */
+    shape_view view;               /* at time 0 */
+    shape_light light;             /* at time 0 */
     view_course course;
     double time; /* of a picture without a window [s] */
     shape_gl_options options;

@@ -132,7 +132,8 @@ static void ask_picture(window_state *w)
     request.width = width;
     request.height = height;
     request.number = ++w->asks;
-    view_renderer_ask(w->renderer, &request, w->set, w->other_set);
+    const view_shown shown = {w->set, w->other_set, w->things};
+    view_renderer_ask(w->renderer, &request, &shown);
     memcpy(&w->asked, &w->state, sizeof w->state);
     w->asked_size[0] = width;
     w->asked_size[1] = height;
@@ -243,7 +244,9 @@ static void run(window_state *w)
             left = 3;
         if (w->playing)
             w->state.time += fmin(passed, 0.25);
+        settle_camera(w, false);
         window_hear_news(w);
+        settle_camera(w, true); /* a scene may have another eye now */
         look_at_picture(w);
         window_compare(w);
         settle_camera(w, false);
@@ -311,7 +314,7 @@ static shape_status start_other(window_state *w, shape_error *error)
     snprintf(w->other_path, sizeof w->other_path, "%s", job->other_path);
     if (!status && job->other_watched) {
         view_generator generator = view_generator_of_path(job->other_path, job->seed);
-        w->other_watch = view_watch_start(job->other_path, &generator, wake, error);
+        w->other_watch = view_watch_start(job->other_path, &generator, NULL, wake, error);
         status = w->other_watch ? SHAPE_OK : error->status;
     }
     return status;
@@ -332,9 +335,9 @@ static shape_status start_threads(window_state *w, GLFWwindow *hidden, shape_err
     w->renderer = view_renderer_start(&start, error);
     if (!w->renderer)
         return error->status;
-    /* A morph's pairs are made once, of the file as it was opened; so is a scene. */
-    if (strcmp(job->path, "-") && !job->morph && !job->scene) {
-        w->watch = view_watch_start(job->path, &job->generator, wake, error);
+    /* A morph's pairs are made once, of the file as it was opened; a volume is read once. */
+    if (strcmp(job->path, "-") && !job->morph && !job->volume_file) {
+        w->watch = view_watch_start(job->path, &job->generator, &job->more, wake, error);
         if (!w->watch)
             return error->status;
     }
@@ -383,6 +386,10 @@ shape_status view_window(view_job *job, shape_error *error)
     shape_set_bounds(job->set, &min, &max);
     w->job = job;
     w->wake = wake;
+    w->things = view_things_make(job->opaque);
+    job->opaque = NULL; /* it goes with the last who looks at it */
+    if (job->scene_read)
+        w->scene_was = *job->scene_read;
     w->picture.doing = "";
     begin_state(w);
     w->camera = w->start = view_camera_start(&job->view, min, max);
@@ -394,6 +401,7 @@ shape_status view_window(view_job *job, shape_error *error)
     /* A saved scene looks as the window did. */
     job->view = view_state_view(&w->state, job->view.width, job->view.height);
     job->light = view_state_light(&w->state);
+    view_things_drop(w->things);
     free(w);
     glfwTerminate();
     return status;

@@ -10,7 +10,7 @@ static void ask(window_state *w, float *radiance)
     const view_picture *p = &w->picture;
     shape_view view = view_state_view(&w->asked, w->asked_size[0], w->asked_size[1]);
     const view_reference_job job = {.placed = w->placed,
-                                    .opaque = w->job->opaque,
+                                    .things = w->things,
                                     .view = view_reference_view(&view),
                                     .light = view_state_light(&w->asked),
                                     .seed = w->job->seed,

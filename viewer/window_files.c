@@ -38,7 +38,7 @@ void window_open_other(window_state *w, const char *path)
     if (!path[0])
         return;
     view_generator generator = view_generator_of_path(path, w->job->seed);
-    w->other_watch = view_watch_start(path, &generator, w->wake, &error);
+    w->other_watch = view_watch_start(path, &generator, NULL, w->wake, &error);
     if (w->other_watch)
         view_watch_ask(w->other_watch, &generator);
     else
@@ -67,6 +67,19 @@ static void hear_other(window_state *w)
     memcpy(w->other_error, news.text, sizeof w->other_error);
     if (news.contents.set && window_take_other(w, news.contents.set, &error))
         snprintf(w->other_error, sizeof w->other_error, "%s", error.text);
+    news.contents.set = NULL;           /* taken */
+    view_contents_free(&news.contents); /* of another scene, light and things are not shown */
+}
+
+static void take_things(window_state *w, view_contents *contents)
+{
+    view_things *things = view_things_make(contents->opaque);
+    contents->opaque = NULL;
+    if (!things)
+        return;
+    view_things_drop(w->things);
+    w->things = things;
+    w->set_number++;
 }
 
 static void hear_own(window_state *w)
@@ -90,6 +103,12 @@ static void hear_own(window_state *w)
     w->reload_ask = w->asks + 1;
     if (window_take_set(w, news.contents.set, &error))
         snprintf(w->error, sizeof w->error, "%s", error.text);
+    news.contents.set = NULL; /* taken */
+    if (news.contents.scene)
+        window_take_scene(w, news.contents.scene);
+    if (news.contents.things_read)
+        take_things(w, &news.contents);
+    view_contents_free(&news.contents);
 }
 
 void window_hear_news(window_state *w)

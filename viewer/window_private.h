@@ -24,6 +24,9 @@ typedef struct window_state {
     view_renderer *renderer;
     view_watch *watch, *other_watch; /* other: the file of the right half */
     view_shared *set, *other_set, *placed;
+    view_things *things;
+    shape_scene
+        scene_was; /* what the scene's file said last of light and camera; its pointers are not looked at */
     char other_path[VIEW_PATH_MAX]; /* empty: there is none */
     uint64_t set_number, asked_number, asks,
         reload_ask;  /* reload_ask: the first request for a file read again; 0 */
@@ -40,6 +43,11 @@ typedef struct window_state {
     unsigned map;       /* the difference as a texture */
     void (*wake)(void); /* for threads with news */
 } window_state;
+
+/* --- window_scene.c: a scene that is read again --- */
+
+/* Takes over what the file says otherwise than it did: light and camera. */
+void window_take_scene(window_state *w, const shape_scene *scene);
 
 /* --- window_input.c: keys and the mouse --- */
 
