@@ -19,7 +19,7 @@
 static bool headless, paper_lod;
 static int method, maker = -1;
 static const char *const makers[] = {"neph-gauss", "neph-meta"};
-static int64_t bench_frames, samples = 32, light_grid = 48;
+static int64_t bench_frames, largest, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
     day_given, decay_given, time_given;
@@ -48,6 +48,9 @@ static const cli_option view_options[] = {
      "paper methods: the printed distance formula for the step, not 0.1", NULL, true},
     {"alpha", 0, CLI_FLAG, &alpha, 0, 0, NULL,
      "pictures with coverage as alpha, the sky left out (.png, .exr)", NULL, true},
+    {"largest", 0, CLI_INTEGER, &largest, 0, 16384, "PIXELS",
+     "longest side of what is drawn at once, for GPUs with little memory; 0: what the GPU can [0]", NULL,
+     true},
     {"shaders", 0, CLI_TEXT, &shader_folder, 0, 0, "FOLDER",
      "read the shaders from here, not the built-in ones", NULL, true},
     {0}};
@@ -258,12 +261,12 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     if (bench_given) {
         bench(job, renderer, started, common);
     } else {
-        for (int i = 0; i < job->samples; i++) {
-            cli_check(shape_gl_draw(renderer, &view, i, &error), &error);
-            shape_gl_finish();
-            cli_progress("drawing", (double)(i + 1) / job->samples);
-        }
-        write_picture(job, &view, renderer, common);
+        const view_plan plan = {job->samples, job->largest, job->alpha, cli_progress};
+        unsigned char *bytes;
+        size_t size;
+        cli_check(view_encode_drawn(renderer, &view, &plan, common->output, &bytes, &size, &error), &error);
+        cli_write(common, bytes, size, true);
+        free(bytes);
     }
     shape_gl_destroy(renderer);
     shape_gl_context_destroy(context);
@@ -300,6 +303,10 @@ static void check_command(const cli_common *common, view_frames *frames)
         cli_wrong("--bench and --frames are two ways to draw (give one of them)");
     if (overwrite && !frames_given)
         cli_wrong("--overwrite needs --frames");
+    if (largest && largest < SHAPE_GL_PART_STEP)
+        cli_wrong("--largest %d: must be 0 or at least %d", (int)largest, SHAPE_GL_PART_STEP);
+    if (largest && (bench_given || error_given))
+        cli_wrong("--largest: --bench and --error draw a picture at once");
     if (paper_lod && method < SHAPE_GL_PAPER)
         cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
     if (cli_given("fps") && !frames_given)
@@ -356,6 +363,7 @@ static void plan(view_job *job, const cli_common *common)
     job->title = common->argument_count ? job->path : makers[maker];
     job->other_path = common->argument_count > 1 ? common->arguments[1] : NULL;
     job->divider = (float)split_share;
+    job->largest = (int)largest;
     cli_given_text(cli_volume_options, job->opening, sizeof job->opening);
     cli_given_text(cli_optics_options, job->opening, sizeof job->opening);
     cli_given_text(cli_scene_options + 1, job->opening, sizeof job->opening); /* --allow-outside */

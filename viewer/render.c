@@ -590,6 +590,7 @@ void view_renderer_shoot(view_renderer *r, const char *path, int width, int heig
     r->wish_shot.width = width;
     r->wish_shot.height = height;
     r->wish_shot.alpha = alpha;
+    r->wish_shot.largest = r->start.largest;
     r->shoot = true;
     r->picture.done = false;
     pthread_cond_signal(&r->asked);

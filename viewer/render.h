@@ -47,6 +47,7 @@ typedef struct view_render_start {
     void (*make_current)(void *context, bool current);
     void *context;
     void (*wake)(void); /* called from the thread when there is something new */
+    int largest;        /* side of what is drawn at once, of screenshots; 0: what the GPU can */
 } view_render_start;
 
 view_renderer *view_renderer_start(const view_render_start *start, shape_error *error);

@@ -32,6 +32,7 @@ typedef struct view_job {
     bool scene, alpha;
     bool volume_file; /* a .vdb or raw floats: nothing edits it */
     int samples;      /* of a picture without a window, and of a window at rest */
+    int largest;      /* side of what is drawn at once; 0: what the GPU can */
     double load_ms;
     uint64_t seed; /* as given */
     double sun[2]; /* azimuth and height, degrees, as given */
@@ -61,6 +62,20 @@ void view_job_free(view_job *job);
 /* What the renderer has drawn, of the view's size, as an image; with alpha where asked for. */
 shape_status view_read_image(shape_gl_renderer *renderer, int width, int height, bool alpha,
                              shape_image **image, shape_error *error);
+/* How a picture is drawn. */
+typedef struct view_plan {
+    int samples; /* a pixel */
+    int largest; /* side of what is drawn at once [pixels]; 0: what the GPU can */
+    bool alpha;
+    void (*progress)(const char *what, double done); /* NULL: none */
+} view_plan;
+
+/* Draws all samples of a picture, in parts where it is larger than the plan's largest. The caller destroys *image. */
+shape_status view_draw_image(shape_gl_renderer *renderer, const shape_view *view, const view_plan *plan,
+                             shape_image **image, shape_error *error);
+/* The same, encoded in the format that the output's name asks for. */
+shape_status view_encode_drawn(shape_gl_renderer *renderer, const shape_view *view, const view_plan *plan,
+                               const char *output, unsigned char **bytes, size_t *size, shape_error *error);
 /* Encodes what the renderer has drawn, in the format that the output's name asks for. */
 shape_status view_encode(shape_gl_renderer *renderer, const shape_view *view, bool alpha, const char *output,
                          unsigned char **bytes, size_t *size, shape_error *error);

@@ -331,7 +331,7 @@ static shape_status start_threads(window_state *w, GLFWwindow *hidden, shape_err
         status = start_other(w, error);
     if (status)
         return status;
-    const view_render_start start = {job->options, job->morph, make_current, hidden, wake};
+    const view_render_start start = {job->options, job->morph, make_current, hidden, wake, job->largest};
     w->renderer = view_renderer_start(&start, error);
     if (!w->renderer)
         return error->status;

@@ -14,6 +14,9 @@ uniform highp sampler2DShadow sun_map; // 0: nearest to the sun
 uniform highp sampler3D shade;         // the sun's share that clouds let through to their light grids' cells
 uniform int has_ground;
 uniform float ground; // its height above the eye [m]
+uniform int is_ground;
+uniform vec2 ground_middle; // x and z, relative to the eye
+uniform float ground_reach; // from its middle along x and z [m]
 
 layout(location = 0) out vec4 radiance_out; // radiance, distance along the ray
 layout(location = 1) out vec4 work_out;
@@ -22,6 +25,12 @@ layout(location = 1) out vec4 work_out;
 float distance_along(vec3 ray)
 {
     float facing = dot(face_plane.xyz, ray), by_plane = face_plane.w / facing;
+    if (is_ground == 1) {
+        vec2 away = abs(by_plane * ray.xz - ground_middle);
+        if (!(by_plane > 0.0 && max(away.x, away.y) < ground_reach))
+            discard;
+        return by_plane;
+    }
     return abs(facing) > 1e-3 && by_plane > 0.0 ? by_plane : max(dot(place, ray), 0.0);
 }
 

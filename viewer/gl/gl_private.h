@@ -74,7 +74,8 @@ typedef struct gl_tiles {
 } gl_tiles;
 
 shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
-                           const shape_view *view, const shape_camera *camera, shape_error *error);
+                           const shape_view *view, const shape_gl_part *part, const shape_camera *camera,
+                           shape_error *error);
 void gl_tiles_free(gl_tiles *tiles);
 
 /* --- grid_light.c, grid_baked.c: what is made on the CPU and then uploaded --- */
@@ -143,11 +144,12 @@ typedef struct gl_surface {
     GLuint map, map_framebuffer; /* distances towards the sun, as a depth texture */
     gl_target picture;           /* radiance and distance along the ray, of this sample */
     GLuint clouds;               /* records of all clouds, in sight or not */
-    int count, solid_count;      /* triangles; those that are not the ground come first */
+    int count, solid_count;      /* triangles; those that are not the ground's */
     shape_dvec3 middle;          /* of these; what vertices are relative to */
     float radius;
     bool has_ground, mapped;
     double ground;
+    float ground_colour[3];
 } gl_surface;
 
 /* The sun's share that clouds let through to each cell of all light grids, into light->shade. Needs no OpenGL. */
@@ -164,6 +166,7 @@ typedef struct gl_frame {
     const shape_view *view;
     const shape_camera *camera;
     const gl_tiles *tiles;
+    const shape_gl_part *part; /* of the view; never of width 0 */
     int sample;
     bool moving;
     float share; /* of what is drawn in the picture that is there already, 1: all; of moving pictures */
@@ -196,6 +199,7 @@ struct shape_gl_renderer {
     int view_kind; /* which scenes the view program is for, see prepare_program */
     GLuint view_program, tonemap, density, empty_array;
     GLuint copy, heat, query;
+    shape_gl_part part;
     gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */
     int width, height;
     float window_length; /* of the exact view's candidates [m] */
@@ -249,6 +253,6 @@ void gl_set_scene(const gl_scene *scene, GLuint program);
 void gl_set_grids(const gl_grids *grids, GLuint program);
 void gl_set_tiles(const gl_tiles *tiles, GLuint program);
 void gl_set_light(const shape_gl_renderer *renderer, GLuint program);
-void gl_set_camera(const shape_view *view, const shape_camera *camera, int sample, GLuint program);
+void gl_set_camera(const gl_frame *frame, GLuint program);
 
 #endif

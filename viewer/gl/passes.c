@@ -172,17 +172,28 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     return SHAPE_OK;
 }
 
+int shape_gl_largest(void)
+{
+    GLint largest = 2048;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    return largest > SHAPE_GL_PART_STEP ? (int)largest : SHAPE_GL_PART_STEP;
+}
+
+void shape_gl_set_part(shape_gl_renderer *renderer, shape_gl_part part)
+{
+    renderer->part = part;
+}
+
 /* The buffers that pictures are drawn into, remade where the size changes. */
 static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int height, shape_error *error)
 {
     if (renderer->mean.framebuffer && renderer->width == width && renderer->height == height)
         return SHAPE_OK;
-    GLint largest = 2048;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    int largest = shape_gl_largest();
     if (width > largest || height > largest)
         return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                "a picture of %dx%d is larger than this GPU draws (%dx%d)", width, height,
-                               (int)largest, (int)largest);
+                               largest, largest);
     shape_status status = gl_target_make(&renderer->mean, width, height, true, error);
     if (!status && renderer->options.method == SHAPE_GL_DEFAULT)
         status = gl_preview_resize(&renderer->preview, width, height, error);
@@ -236,12 +247,12 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
 {
     GLuint program = renderer->view_program;
     glUseProgram(program);
-    glViewport(0, 0, frame->view->width, frame->view->height);
+    glViewport(0, 0, frame->part->width, frame->part->height);
     gl_set_scene(&renderer->scene, program);
     gl_set_grids(&renderer->grids, program);
     gl_set_tiles(frame->tiles, program);
     gl_set_light(renderer, program);
-    gl_set_camera(frame->view, frame->camera, frame->sample, program);
+    gl_set_camera(frame, program);
     gl_set_method(renderer, frame->view, program);
     gl_set_surface(renderer, program);
     if (in_parts(renderer))
@@ -271,16 +282,18 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
 static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, int sample, bool moving,
                          shape_error *error)
 {
-    shape_status status = prepare_targets(renderer, view->width, view->height, error);
+    const shape_gl_part whole = {0, 0, view->width, view->height};
+    const shape_gl_part *part = renderer->part.width ? &renderer->part : &whole;
+    shape_status status = prepare_targets(renderer, part->width, part->height, error);
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)
         return status;
     shape_camera camera = shape_view_camera(view);
     gl_tiles tiles;
-    gl_frame frame = {view, &camera, &tiles, sample, moving, 1};
+    gl_frame frame = {view, &camera, &tiles, part, sample, moving, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
-    status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, &camera, error);
+    status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, part, &camera, error);
     if (!status) {
         gl_light_place(renderer->grids.light, &renderer->scene, renderer->volume);
         gl_surface_draw(renderer, &frame);

@@ -1,6 +1,7 @@
 /* Opaque things: drawn as triangles into radiance and distance before the clouds are marched, which then end there. Each
  * sample sees them through its own places within the pixels, so that their edges become smooth with the samples, and no
- * pixel mixes a near distance with a far one. */
+ * pixel mixes a near distance with a far one. The ground is no triangle but a plane that all rays are asked about: what is
+ * clipped from so large a triangle is off by pixels. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@ static void find_extent(gl_surface *s, const shape_opaque *opaque)
         if (t.ground) {
             s->has_ground = true;
             s->ground = t.corner[0].y;
+            memcpy(s->ground_colour, t.albedo, sizeof s->ground_colour);
             continue;
         }
         s->solid_count++;
@@ -60,13 +62,16 @@ static void put_triangle(float *to, const shape_opaque_triangle *t, shape_dvec3 
 static shape_status upload(gl_surface *s, const shape_opaque *opaque, shape_error *error)
 {
     enum { TRIANGLE = 3 * VERTEX_FLOATS };
-    size_t count = (size_t)s->count, solid = 0, ground = (size_t)s->solid_count;
-    float *all = malloc((count + 1) * TRIANGLE * sizeof *all);
+    size_t count = (size_t)s->solid_count;
+    float *all = malloc((count + 1) * TRIANGLE * sizeof *all), *to = all;
     if (!all)
         return shape_error_memory(error);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; i < shape_opaque_triangle_count(opaque); i++) {
         shape_opaque_triangle t = shape_opaque_get_triangle(opaque, i);
-        put_triangle(all + (t.ground ? ground++ : solid++) * TRIANGLE, &t, s->middle);
+        if (t.ground)
+            continue;
+        put_triangle(to, &t, s->middle);
+        to += TRIANGLE;
     }
     glGenVertexArrays(1, &s->array);
     glGenBuffers(1, &s->buffer);
@@ -225,22 +230,32 @@ void gl_surface_draw(shape_gl_renderer *r, const gl_frame *frame)
     GLuint program = s->program;
     glUseProgram(program);
     glBindFramebuffer(GL_FRAMEBUFFER, s->picture.framebuffer);
-    glViewport(0, 0, frame->view->width, frame->view->height);
+    glViewport(0, 0, frame->part->width, frame->part->height);
     glClearBufferfv(GL_COLOR, 0, nothing);
     glClearBufferfv(GL_COLOR, 1, no_work);
     glClearBufferfv(GL_DEPTH, 0, &far);
     gl_set_light(r, program);
-    gl_set_camera(frame->view, frame->camera, frame->sample, program);
+    gl_set_camera(frame, program);
     set_sun(r, program);
     set_shade(r, eye);
     gl_bind(program, "sun_map", 7, GL_TEXTURE_2D, s->map);
     gl_set_dvector(program, "middle", shape_dvec3_sub(s->middle, eye));
     gl_set_int(program, "has_ground", s->has_ground);
     gl_set_float(program, "ground", (float)(s->ground - eye.y));
+    gl_set_vector(program, "ground_colour", s->ground_colour);
+    glUniform2f(glGetUniformLocation(program, "ground_middle"), (float)-eye.x, (float)-eye.z);
+    gl_set_float(program, "ground_reach", (float)(SHAPE_OPAQUE_GROUND_SIDE / 2));
+    gl_set_int(program, "is_ground", 0);
+    glUniform2f(glGetUniformLocation(program, "part_size"), (float)frame->part->width,
+                (float)frame->part->height);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glBindVertexArray(s->array);
-    glDrawArrays(GL_TRIANGLES, 0, 3 * s->count);
+    glDrawArrays(GL_TRIANGLES, 0, 3 * s->solid_count);
+    if (s->has_ground) {
+        gl_set_int(program, "is_ground", 1);
+        gl_draw_triangle(r);
+    }
     glDisable(GL_DEPTH_TEST);
 }
 
