@@ -99,4 +99,11 @@ xdotool windowsize "$window" 1 1
 sleep 0.5
 xdotool windowsize "$window" 400 240
 like $all large wall
+# The commands hold what is opaque, too.
+key F12
+has_scene() { [ -s s-0001.png ]; }
+until_true 60 has_scene || fail "F12 wrote no picture of the scene: $(ls)"
+identify -format '%[nephele]' s-0001.png >commands.sh
+PATH=$bin:$PATH sh -e commands.sh 2>commands.log || fail "the scene's commands fail: $(cat commands.log)"
+[ "$(compare -metric AE s-0001.png cloud.png null: 2>&1)" = 0 ] || fail "the scene's commands draw another picture"
 quit

@@ -2,6 +2,7 @@
  * PLY, STL and OFF are taken as z up, as by neph-mesh. */
 #include "render_opaque.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "opaque_scene.h"
@@ -57,6 +58,31 @@ shape_scene *render_opaque_list(void)
         cli_check(shape_scene_set_text(&list->meshes[i].file, meshes.text[i], &error), &error);
     }
     return list;
+}
+
+/* Appends " --name 'text'", as a shell reads it back; cut at room bytes. */
+static void append_quoted(char *text, size_t room, const char *name, const char *value)
+{
+    size_t used = strlen(text);
+    int length = snprintf(text + used, room - used, " --%s '", name);
+    used += length > 0 ? (size_t)length : 0;
+    for (const char *c = value; *c && used + 8 < room; c++)
+        used += (size_t)snprintf(text + used, room - used, *c == '\'' ? "'\\''" : "%c", *c);
+    if (used + 2 < room)
+        snprintf(text + used, room - used, "'");
+}
+
+void render_opaque_text(char *text, size_t room)
+{
+    text[0] = 0;
+    for (int i = 0; i < meshes.count; i++)
+        append_quoted(text, room, "mesh", meshes.text[i]);
+    for (int i = 0; i < colours.count; i++)
+        append_quoted(text, room, "mesh-colour", colours.text[i]);
+    size_t used = strlen(text);
+    if (ground_given)
+        snprintf(text + used, room - used, " --ground %.9g --ground-colour %.9g,%.9g,%.9g", ground,
+                 ground_colour[0], ground_colour[1], ground_colour[2]);
 }
 
 bool render_opaque_ground(double *height, float albedo[3])

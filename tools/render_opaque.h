@@ -14,6 +14,8 @@ shape_opaque *render_opaque_read(const cli_input *input);
 /* The --mesh files as the meshes of a scene, by the paths that were given, for programs that read them again. The caller
  * destroys it. */
 shape_scene *render_opaque_list(void);
+/* The options that were given, as a shell reads them back; cut at room bytes, at least 256. */
+void render_opaque_text(char *text, size_t room);
 /* Whether there is a ground, and which. */
 bool render_opaque_ground(double *height, float albedo[3]);
 /* Adds the --mesh files to a scene that is being saved. */

@@ -168,6 +168,7 @@ void view_command_write(const view_state *state, const view_state *base, const v
     add_path(&end, made ? "cloud.neph" : command->path);
     if (!made)
         add(&end, "%s", command->opening);
+    add(&end, "%s", command->things);
     if (command->volume && state->cloud_count)
         add_knobs(&end, state, base, 0, true); /* after the options that opened it, so that these hold */
     add(&end, " --headless --size %dx%d --method %s", command->size[0], command->size[1],

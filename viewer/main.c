@@ -105,11 +105,10 @@ static const cli_program program = {
     .name = "neph-view",
     .arguments = "IN [OTHER]",
     .about =
-        "Shows a .neph, a grammar, a mesh as neph-mesh makes a cloud of it, a scene (docs/scene.md) or a "
-        "volume (.vdb, raw) in a window, or writes "
-        "pictures of it without "
-        "one.\nA second file is shown beside it, right of a line that can be dragged, in the same light and "
-        "view.\n"
+        "Shows a .neph, a grammar, a mesh as neph-mesh makes a cloud of it, a scene (docs/scene.md) or a\n"
+        "volume (.vdb, raw) in a window, or writes pictures of it without one. A second file is shown "
+        "beside\n"
+        "it, right of a line that can be dragged, in the same view and light.\n"
         "\"-\" reads standard input. --save-scene writes what the window shows when it is closed. A grammar\n"
         "is derived as neph-lsys does it, by --seed. The window watches the file and shows it anew when it "
         "is\n"
@@ -367,6 +366,7 @@ static void plan(view_job *job, const cli_common *common)
     cli_given_text(cli_volume_options, job->opening, sizeof job->opening);
     cli_given_text(cli_optics_options, job->opening, sizeof job->opening);
     cli_given_text(cli_scene_options + 1, job->opening, sizeof job->opening); /* --allow-outside */
+    render_opaque_text(job->things, sizeof job->things);
     job->alpha = alpha;
     job->morph_path = morph_path;
     job->time = moment_time;

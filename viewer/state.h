@@ -108,6 +108,7 @@ typedef struct view_command {
     const char *path;    /* the opened file; "" where a generator takes none */
     const char *morph;   /* the one that it turns into, or NULL */
     const char *opening; /* options to open it with, or "" */
+    const char *things;  /* --mesh and --ground, or "" */
     bool alpha, paper_lod;
     bool volume; /* the file is one that neph-edit does not take */
     bool scene;  /* the file has light of its own */

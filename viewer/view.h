@@ -29,6 +29,7 @@ typedef struct view_job {
     bool other_watched;                    /* it is a file that can be watched */
     view_generator generator;              /* what makes the first file's cloud */
     char opening[1024];                    /* options that belong to the file, as they were given */
+    char things[4096];                     /* --mesh and --ground, as they were given */
     bool scene, alpha;
     bool volume_file; /* a .vdb or raw floats: nothing edits it */
     int samples;      /* of a picture without a window, and of a window at rest */

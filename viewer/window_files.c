@@ -122,6 +122,7 @@ void window_make_command(const window_state *w, const int size[2], bool alpha, c
     const view_command command = {.path = w->job->path,
                                   .morph = w->job->morph_path,
                                   .opening = w->job->opening,
+                                  .things = w->job->things,
                                   .alpha = alpha,
                                   .paper_lod = w->job->options.paper_lod,
                                   .volume = w->job->volume_file,
