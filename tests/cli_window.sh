@@ -48,14 +48,14 @@ unlike $panel open first 0.1
 like $cloud open first
 # The sun's azimuth: the slider's place in the panel, counted from the sections above it. The mouse then goes, and the
 # slider's help with it.
-drag 135 200 40 200
+drag 135 269 40 269
 at 540 340
 unlike $cloud turned first
 key ctrl+z
 like $cloud undone first
 key ctrl+shift+z
 unlike $cloud redone first
-at 120 200 click 3
+at 120 269 click 3
 at 540 340
 like $cloud reset first
 key Tab
