@@ -64,7 +64,7 @@ cmp -s c.exr d.exr || fail "a scene saved from a scene gives another picture"
 "$bin/neph-view" -q view.json --headless --light-grid 8 --samples 1 -o b.png
 cmp -s a.png b.png || fail "neph-view --save-scene: the scene gives another picture"
 # Meshes: --mesh becomes a mesh of the saved scene, beside those that it has, and gives the same bytes by either method;
-# neph-view keeps them, and all that do not show them say so.
+# neph-view shows and keeps them, and all that do not show them say so.
 printf 'OFF\n3 1 0\n-30 -30 -2\n30 -30 -2\n0 40 -2\n3 0 1 2\n' >in/floor.off
 printf 'v -3 -1 6\nv 3 -1 6\nv 0 5 6\nf 1 2 3\n' >wall.obj
 small="$small --eye 2,6,40 --target 0,1,0"
@@ -96,7 +96,9 @@ sed 's|"file": "wall.obj"|"file": "turned.obj", "unit": 0.01, "rotate": [0, -90,
 "$bin/neph-render" --compare a.exr b.exr --tolerance 1e-6 >/dev/null || fail "a mesh does not stand where its place says"
 note="note: meshes of the scene are"
 "$bin/neph-view" both.json --headless --light-grid 8 --samples 1 -o a.png --save-scene view.json 2>err
-grep -q "neph-view: $note not drawn (neph-render draws them)" err || fail "neph-view says nothing of meshes"
+! grep -q "$note" err || fail "neph-view draws meshes and says that it does not"
+"$bin/neph-view" gauss.json --headless --light-grid 8 --samples 1 -o b.png 2>err
+! cmp -s a.png b.png || fail "neph-view does not show the scene's meshes"
 grep -q '"file": "in/floor.off"' view.json || fail "neph-view --save-scene loses the meshes"
 "$bin/neph-vdb" both.json --resolution 16 -o x.vdb 2>err
 grep -q "$note left out" err || fail "neph-vdb says nothing of meshes"

@@ -418,6 +418,40 @@ static void no_image_negative_in_dense_cloud(void **state)
     sample_end(&scene);
 }
 
+/* Level ground is met from above and from below at height / cosine, as far as its side reaches, and shadows what is under
+ * it; its triangles are told from a mesh's. */
+static void ground_reaches_far(void **state)
+{
+    (void)state;
+    shape_error error;
+    const float colour[3] = {0.1f, 0.2f, 0.3f};
+    shape_opaque *opaque = shape_opaque_create(NULL);
+    add(opaque, square(1, 5, false), NULL, 1, 1, 1);
+    if (shape_opaque_add_ground(opaque, -2, colour, &error) || shape_opaque_finish(opaque, &error))
+        fail_msg("%s", error.text);
+    size_t ground = 0, count = shape_opaque_triangle_count(opaque);
+    for (size_t i = 0; i < count; i++) {
+        shape_opaque_triangle t = shape_opaque_get_triangle(opaque, i);
+        ground += t.ground;
+        for (int k = 0; k < 3; k++)
+            assert_true(t.corner[k].y == (t.ground ? -2 : 5));
+        assert_true(t.albedo[1] == (t.ground ? 0.2f : 1));
+    }
+    assert_int_equal(count, 4);
+    assert_int_equal(ground, 2);
+    for (double away = 1; away < SHAPE_OPAQUE_GROUND_SIDE / 2; away *= 7) {
+        shape_opaque_hit hit;
+        for (int below = 0; below < 2; below++) {
+            shape_dvec3 from = shape_dvec3_make(3, below ? -5 : 1, 0);
+            shape_dvec3 d = shape_dvec3_normalize(shape_dvec3_make(0, below ? 3 : -3, -away));
+            assert_true(shape_opaque_find(opaque, from, d, INFINITY, &hit));
+            assert_float_equal(hit.t, sqrt(9 + away * away), 1e-9 * away);
+            assert_true(hit.normal.y == (below ? -1 : 1) && hit.albedo[2] == 0.3f);
+        }
+    }
+    shape_opaque_destroy(opaque);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -430,6 +464,7 @@ int main(void)
         cmocka_unit_test(things_throw_shadows_into_clouds),
         cmocka_unit_test(rays_end_at_the_surface_exactly),
         cmocka_unit_test(no_image_negative_in_dense_cloud),
+        cmocka_unit_test(ground_reaches_far),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,6 +39,8 @@ shape_set *cli_generator_run(const cli_generator *generator, const char *input,
 /* The same by running the generator's program, which stands beside this one or in PATH; the options were checked. */
 shape_set *cli_generator_spawn(const cli_generator *generator, const char *input,
                                const shape_scene_options *options);
+/* The path of the program that stands beside this one, in the caller's room, or its bare name, to be looked for in PATH. */
+const char *cli_find_program(const char *name, char *path, size_t room);
 /* Sets cli_medium_values to the defaults, and these options over them. place: "sky.json: clouds[2].medium". */
 void cli_medium_set(const shape_scene_options *options, const char *place);
 

@@ -14,16 +14,15 @@ extern char **environ;
 
 enum { PATH_ROOM = 4096, MAX_ARGUMENTS = 360, MAX_OUTPUT = 0x40000000 };
 
-/* The program that stands beside this one, or its bare name, to be looked for in PATH. */
-static const char *find_program(const char *name, char path[PATH_ROOM])
+const char *cli_find_program(const char *name, char *path, size_t room)
 {
-    ssize_t length = readlink("/proc/self/exe", path, PATH_ROOM - 1);
+    ssize_t length = readlink("/proc/self/exe", path, room - 1);
     if (length <= 0)
         return name;
     path[length] = 0;
     char *slash = strrchr(path, '/');
     size_t used = slash ? (size_t)(slash - path) + 1 : 0;
-    if (used + strlen(name) >= PATH_ROOM)
+    if (used + strlen(name) >= room)
         return name;
     memcpy(path + used, name, strlen(name) + 1);
     return access(path, X_OK) ? name : path;
@@ -113,7 +112,7 @@ shape_set *cli_generator_spawn(const cli_generator *generator, const char *input
                                const shape_scene_options *options)
 {
     char path[PATH_ROOM], *texts;
-    const char *program = find_program(generator->name, path);
+    const char *program = cli_find_program(generator->name, path, sizeof path);
     char **arguments = build_arguments(program, input, options, &texts);
     FILE *out = tmpfile(), *err = tmpfile();
     if (!out || !err)

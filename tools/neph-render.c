@@ -423,6 +423,10 @@ static void render(const cli_common *common)
         cli_wrong("--lamp-intensity: there is no lamp (give --lamp X,Y,Z)");
     opaque_scene_tell(render_resume_note_mesh);
     shape_opaque *opaque = render_opaque_read(&input);
+    double ground;
+    float ground_albedo[3];
+    if (render_opaque_ground(&ground, ground_albedo))
+        render_resume_note_ground(ground, ground_albedo);
     cli_picture_apply(set, &p.view, &p.light);
     p.image = make_image(&p.view, format);
     double start = seconds();

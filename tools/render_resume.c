@@ -66,11 +66,24 @@ void render_resume_check(void)
 
 /* --- what the picture depends on --- */
 
-void render_resume_note_mesh(const shape_mesh *mesh, const shape_frame *frame, const float albedo[3])
+/* The sum of all that stands in the picture, begun with the first of it. */
+static void begin_meshes(void)
 {
     if (!state.any_mesh)
         SHA256Init(&state.meshes);
     state.any_mesh = true;
+}
+
+void render_resume_note_ground(double height, const float albedo[3])
+{
+    begin_meshes();
+    SHA256Update(&state.meshes, (const uint8_t *)&height, sizeof height);
+    SHA256Update(&state.meshes, (const uint8_t *)albedo, 3 * sizeof *albedo);
+}
+
+void render_resume_note_mesh(const shape_mesh *mesh, const shape_frame *frame, const float albedo[3])
+{
+    begin_meshes();
     SHA256Update(&state.meshes, (const uint8_t *)frame, sizeof *frame);
     SHA256Update(&state.meshes, (const uint8_t *)albedo, 3 * sizeof *albedo);
     SHA256Update(&state.meshes, (const uint8_t *)mesh->points, mesh->point_count * sizeof *mesh->points);

@@ -15,6 +15,7 @@ void render_resume_check(void);
 
 /* A mesh that stands in the picture, with its place and colour; all are told before the work starts. */
 void render_resume_note_mesh(const shape_mesh *mesh, const shape_frame *frame, const float albedo[3]);
+void render_resume_note_ground(double height, const float albedo[3]);
 
 /* Sets pixels, samples_before and keep of the options where --resume is given: from its file, if that is there. Ends the
  * program where the file is of another picture, damaged, or has more paths than options->samples. The other members of

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "setting.h"
 #include "state.h"
 
 typedef struct text_end {
@@ -97,27 +98,35 @@ static void add_edit(text_end *end, const view_state *state, const view_state *b
         add_vector(end, "translate", c->move);
 }
 
+static void add_settings(text_end *end, const view_generator *g)
+{
+    view_setting_row row;
+    for (int i = 0; view_setting_get_row(g, i, &row); i++) {
+        char value[96];
+        if (!g->settings[i].given)
+            continue;
+        view_setting_text(&row, &g->settings[i], value, sizeof value);
+        add(end, " --%s%s%s", row.name, value[0] ? " " : "", value);
+    }
+}
+
 /* What makes the file that is looked at; false where it is the one that was opened. */
-static bool add_maker(text_end *end, const view_state *state, const view_state *base, const char *path,
-                      bool grammar)
+static bool add_maker(text_end *end, const view_state *state, const view_state *base, const char *path)
 {
     const view_generator *g = &state->generator;
-    bool piped = false;
-    if (grammar) {
-        add(end, "neph-lsys");
-        add_path(end, path);
-        if (g->own_iterations)
-            add(end, " --iterations %d", g->iterations);
-        if (g->own_angle)
-            add(end, g->angle[0] == g->angle[1] ? " --angle %.9g" : " --angle %.9g..%.9g", g->angle[0],
-                g->angle[1]);
+    bool piped = false, made = g->which >= 0;
+    if (made) {
+        add(end, "%s", view_generator_program(g));
+        if (path[0])
+            add_path(end, path);
+        add_settings(end, g);
         add(end, " --seed %llu", (unsigned long long)g->seed);
         if (state->cloud_count)
             add_knobs(end, state, base, 0, true);
         piped = true;
     }
     for (int i = 0; i < state->cloud_count; i++) {
-        bool medium = !grammar && is_changed(state, base, i);
+        bool medium = !made && is_changed(state, base, i);
         if (!medium && !is_placed(&state->clouds[i]))
             continue;
         add(end, piped ? " | neph-edit -" : "neph-edit");
@@ -152,13 +161,14 @@ void view_command_write(const view_state *state, const view_state *base, const v
     static const char *const methods[] = {"default", "exact", "paper", "paper-ndt"};
     text_end end = {text, 0, room};
     text[0] = 0;
-    bool made = !command->volume && add_maker(&end, state, base, command->path, command->grammar);
+    bool made = !command->volume && add_maker(&end, state, base, command->path);
     if (made)
         add(&end, " -o cloud.neph\n");
     add(&end, "neph-view");
     add_path(&end, made ? "cloud.neph" : command->path);
     if (!made)
         add(&end, "%s", command->opening);
+    add(&end, "%s", command->things);
     if (command->volume && state->cloud_count)
         add_knobs(&end, state, base, 0, true); /* after the options that opened it, so that these hold */
     add(&end, " --headless --size %dx%d --method %s", command->size[0], command->size[1],

@@ -63,14 +63,11 @@ static shape_status draw_frame(view_job *job, shape_gl_renderer *renderer, doubl
         status = shape_gl_load(renderer, job->volume, error);
     if (!status)
         status = shape_gl_light(renderer, &light, error);
-    for (int i = 0; i < job->samples && !status; i++) {
-        status = shape_gl_draw(renderer, &view, i, error);
-        shape_gl_finish();
-    }
+    const view_plan plan = {.samples = job->samples, .largest = job->largest, .alpha = job->alpha};
     unsigned char *bytes;
     size_t size;
     if (!status)
-        status = view_encode(renderer, &view, job->alpha, path, &bytes, &size, error);
+        status = view_encode_drawn(renderer, &view, &plan, path, &bytes, &size, error);
     if (status)
         return status;
     status = shape_file_write(path, bytes, size, error);

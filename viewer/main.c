@@ -11,16 +11,19 @@
 #include "cli_scene.h"
 #include "cli_volume.h"
 #include "shape/file.h"
+#include "render_opaque.h"
+#include "setting.h"
 #include "shape/image.h"
 #include "view.h"
 
 static bool headless, paper_lod;
-static int method;
-static int64_t bench_frames, samples = 32, light_grid = 48;
+static int method, maker = -1;
+static const char *const makers[] = {"neph-gauss", "neph-meta"};
+static int64_t bench_frames, largest, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
     day_given, decay_given, time_given;
-static double allowed_error, frame_range[2], fps = 25, moment_time, decay_range[2];
+static double allowed_error, split_share = 0.5, frame_range[2], fps = 25, moment_time, decay_range[2];
 static view_course course;
 
 static const cli_option view_options[] = {
@@ -35,12 +38,19 @@ static const cli_option view_options[] = {
      "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
      "[off]",
      &error_given, true},
+    {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta",
+     "no IN: what neph-gauss or neph-meta makes, whose options are in the panel [IN]", NULL, true},
+    {"split", 0, CLI_NUMBER, &split_share, 0, 1, "S",
+     "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
      "draw N frames on an orbit of half a degree a frame, print times as JSON", &bench_given, true},
     {"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
      "paper methods: the printed distance formula for the step, not 0.1", NULL, true},
     {"alpha", 0, CLI_FLAG, &alpha, 0, 0, NULL,
      "pictures with coverage as alpha, the sky left out (.png, .exr)", NULL, true},
+    {"largest", 0, CLI_INTEGER, &largest, 0, 16384, "PIXELS",
+     "longest side of what is drawn at once, for GPUs with little memory; 0: what the GPU can [0]", NULL,
+     true},
     {"shaders", 0, CLI_TEXT, &shader_folder, 0, 0, "FOLDER",
      "read the shaders from here, not the built-in ones", NULL, true},
     {0}};
@@ -84,6 +94,7 @@ static const cli_option motion_options[] = {
 
 static const cli_group groups[] = {{"View", view_options},
                                    {"Picture", cli_picture_options},
+                                   {"Opaque things", render_opaque_options},
                                    {"Time", motion_options},
                                    {"Volumes (.vdb, raw)", cli_volume_options},
                                    {"Medium and place of volumes", cli_optics_options},
@@ -92,11 +103,12 @@ static const cli_group groups[] = {{"View", view_options},
 
 static const cli_program program = {
     .name = "neph-view",
-    .arguments = "IN",
+    .arguments = "IN [OTHER]",
     .about =
-        "Shows a .neph, a grammar, a scene (docs/scene.md) or a volume (.vdb, raw) in a window, or writes "
-        "pictures of it without "
-        "one.\n"
+        "Shows a .neph, a grammar, a mesh as neph-mesh makes a cloud of it, a scene (docs/scene.md) or a\n"
+        "volume (.vdb, raw) in a window, or writes pictures of it without one. A second file is shown "
+        "beside\n"
+        "it, right of a line that can be dragged, in the same view and light.\n"
         "\"-\" reads standard input. --save-scene writes what the window shows when it is closed. A grammar\n"
         "is derived as neph-lsys does it, by --seed. The window watches the file and shows it anew when it "
         "is\n"
@@ -106,9 +118,11 @@ static const cli_program program = {
     .examples = "  neph-view castellanus.lsys\n"
                 "  neph-lsys castellanus.lsys | neph-view - --headless --size 1280x720 -o castellanus.png\n"
                 "  neph-view castellanus.neph --frames 0..99 --wind 1,0,0 --shear 0.02 -o frame.%04d.png\n"
+                "  neph-view before.neph after.neph\n"
+                "  neph-view --make gauss --seed 7\n"
                 "  neph-view castellanus.neph --bench 50\n",
-    .min_arguments = 1,
-    .max_arguments = 1,
+    .min_arguments = 0, /* --make takes none */
+    .max_arguments = 2,
     .groups = groups};
 
 static double now_ms(void)
@@ -226,6 +240,15 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     const shape_view view = job->view;
     const shape_light light = job->light;
     cli_check(shape_gl_context_create(&context, &error), &error);
+    if (job->other_set) {
+        unsigned char *bytes;
+        size_t size;
+        cli_check(view_encode_split(job, &view, &light, common->output, &bytes, &size, &error), &error);
+        cli_write(common, bytes, size, true);
+        free(bytes);
+        shape_gl_context_destroy(context);
+        return;
+    }
     if (error_given) {
         draw_within(job, &view, &light, common);
         shape_gl_context_destroy(context);
@@ -237,88 +260,36 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     if (bench_given) {
         bench(job, renderer, started, common);
     } else {
-        for (int i = 0; i < job->samples; i++) {
-            cli_check(shape_gl_draw(renderer, &view, i, &error), &error);
-            shape_gl_finish();
-            cli_progress("drawing", (double)(i + 1) / job->samples);
-        }
-        write_picture(job, &view, renderer, common);
+        const view_plan plan = {job->samples, job->largest, job->alpha, cli_progress};
+        unsigned char *bytes;
+        size_t size;
+        cli_check(view_encode_drawn(renderer, &view, &plan, common->output, &bytes, &size, &error), &error);
+        cli_write(common, bytes, size, true);
+        free(bytes);
     }
     shape_gl_destroy(renderer);
     shape_gl_context_destroy(context);
 }
 
-/* One line a mistake, then the end. */
-static void fail_lines(char *mistakes)
+/* Two files are two pictures of one moment. */
+static void check_second(const cli_common *common)
 {
-    for (char *line = strtok(mistakes, "\n"); line; line = strtok(NULL, "\n"))
-        cli_error("%s", line);
-    exit(CLI_FAILED);
-}
-
-static shape_set *read_source(const char *path, const view_generator *generator, view_contents *contents)
-{
-    shape_error error;
-    static char mistakes[16384];
-    if (view_source_read(path, generator, contents, mistakes, sizeof mistakes, &error))
-        fail_lines(mistakes);
-    return contents->set;
-}
-
-/* A volume that was read into input->set: like a scene, it is not watched. */
-static cli_input use_volume(view_job *job, view_contents *contents, cli_input *input)
-{
+    if (bench_given || frames_given || error_given || morph_path)
+        cli_wrong("\"%s\": --bench, --frames, --error and --morph take one file", common->arguments[1]);
     if (cli_save_wanted())
-        cli_fail("%s: a scene holds no volume (make primitives of it by neph-vdb first)", job->path);
-    input->volume = job->volume_file = true;
-    job->scene = true;
-    contents->used = job->generator;
-    return *input;
-}
-
-/* What is to be shown: a scene, a .neph, a grammar or a volume, told apart by what is in it. */
-static cli_input read_input(view_job *job, view_contents *contents)
-{
-    cli_input input = {.path = job->path};
-    const char *shown = strcmp(job->path, "-") ? job->path : "standard input";
-    unsigned char *bytes;
-    shape_error error;
-    static char mistakes[16384];
-    if (cli_is_volume(job->path)) {
-        input.set = cli_read_volume(job->path);
-        return use_volume(job, contents, &input);
-    }
-    cli_check(shape_file_read(job->path, 0x40000000, &bytes, &input.size, &error), &error);
-    if (cli_is_volume_bytes(bytes, input.size)) {
-        input.set = cli_read_volume_bytes(shown, bytes, input.size);
-        free(bytes);
-        return use_volume(job, contents, &input);
-    }
-    cli_refuse_volume_options();
-    if (shape_scene_is(bytes, input.size)) {
-        cli_check(shape_scene_decode(bytes, input.size, shown, &input.scene, &error), &error);
-        input.set = cli_scene_make(input.scene, job->path);
-        job->scene = true;
-        contents->used = job->generator;
-    } else {
-        if (view_source_decode(job->path, bytes, input.size, &job->generator, contents, mistakes,
-                               sizeof mistakes, &error))
-            fail_lines(mistakes);
-        input.set = contents->set;
-    }
-    free(bytes);
-    job->generator = contents->used;
-    job->generator.seed = job->seed;
-    job->grammar = contents->grammar;
-    if (job->grammar && cli_save_wanted())
-        cli_wrong("--save-scene of a grammar is neph-lsys's (neph-lsys GRAMMAR --save-scene FILE)");
-    return input;
+        cli_wrong("--save-scene: a scene of two files to compare is no scene (open one of them)");
+    if (!strcmp(common->arguments[0], "-") && !strcmp(common->arguments[1], "-"))
+        cli_wrong("- - : standard input is one file");
 }
 
 /* A wrong command is told before the work, not after. */
 static void check_command(const cli_common *common, view_frames *frames)
 {
     shape_error error;
+    if (!common->argument_count && maker < 0)
+        cli_wrong("%s is missing (see --help)", program.arguments);
+    if (common->argument_count && maker >= 0)
+        cli_wrong("\"%s\": --make takes no file", common->arguments[0]);
     if (!headless && !bench_given && !frames_given && common->output_given)
         cli_wrong("-o needs --headless, --frames or --bench (a window writes no picture)");
     if (error_given && (!headless || bench_given || frames_given))
@@ -331,6 +302,10 @@ static void check_command(const cli_common *common, view_frames *frames)
         cli_wrong("--bench and --frames are two ways to draw (give one of them)");
     if (overwrite && !frames_given)
         cli_wrong("--overwrite needs --frames");
+    if (largest && largest < SHAPE_GL_PART_STEP)
+        cli_wrong("--largest %d: must be 0 or at least %d", (int)largest, SHAPE_GL_PART_STEP);
+    if (largest && (bench_given || error_given))
+        cli_wrong("--largest: --bench and --error draw a picture at once");
     if (paper_lod && method < SHAPE_GL_PAPER)
         cli_wrong("--paper-lod belongs to --method paper and paper-ndt");
     if (cli_given("fps") && !frames_given)
@@ -341,6 +316,10 @@ static void check_command(const cli_common *common, view_frames *frames)
             cli_wrong("--%s needs --day", *name);
     if (cli_given("morph-time") && !morph_path)
         cli_wrong("--morph-time needs --morph");
+    if (common->argument_count > 1)
+        check_second(common);
+    else if (cli_given("split"))
+        cli_wrong("--split needs a second file to stand right of the line");
     if (samples_given && bench_given)
         cli_wrong("--samples: --bench draws moving views, of one sample each");
     if (morph_path && (cli_has_suffix(morph_path, ".json") || cli_is_volume(morph_path)))
@@ -379,15 +358,21 @@ static void plan(view_job *job, const cli_common *common)
     job->options.seed = common->seed;
     job->options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     job->samples = (int)samples;
-    job->path = job->title = common->arguments[0];
+    job->path = common->argument_count ? common->arguments[0] : "";
+    job->title = common->argument_count ? job->path : makers[maker];
+    job->other_path = common->argument_count > 1 ? common->arguments[1] : NULL;
+    job->divider = (float)split_share;
+    job->largest = (int)largest;
     cli_given_text(cli_volume_options, job->opening, sizeof job->opening);
     cli_given_text(cli_optics_options, job->opening, sizeof job->opening);
     cli_given_text(cli_scene_options + 1, job->opening, sizeof job->opening); /* --allow-outside */
+    render_opaque_text(job->things, sizeof job->things);
     job->alpha = alpha;
     job->morph_path = morph_path;
     job->time = moment_time;
     job->seed = common->seed;
-    job->generator.seed = common->seed;
+    job->generator =
+        maker < 0 ? view_generator_none(common->seed) : view_generator_named(makers[maker], common->seed);
     course.motion.seed = common->seed;
     course.day_runs = day_given;
     if (decay_given) {
@@ -399,6 +384,27 @@ static void plan(view_job *job, const cli_common *common)
     job->course = course;
 }
 
+static void take_opened(view_job *job, const view_opened *opened)
+{
+    job->set = opened->input.set;
+    job->scene = opened->scene || opened->volume;
+    job->volume_file = opened->volume;
+    job->generator = opened->used;
+    if (job->generator.which >= 0 && cli_save_wanted())
+        cli_wrong("--save-scene of what a generator makes is the generator's (%s --save-scene FILE)",
+                  view_generator_program(&job->generator));
+}
+
+/* Of a scene, it is known only now whether there are meshes. */
+static void check_opaque(const view_job *job)
+{
+    if (!job->opaque || method < SHAPE_GL_PAPER)
+        return;
+    if (render_opaque_given())
+        cli_wrong("--mesh, --ground: the methods of 2018 have no opaque things (choose default or exact)");
+    cli_say("note: meshes of the scene are not shown by --method %s", method_names[method]);
+}
+
 int main(int argc, char **argv)
 {
     double started = now_ms();
@@ -408,23 +414,40 @@ int main(int argc, char **argv)
     shape_error error;
     view_frames frames = {0};
     view_job job = {0};
-    view_contents contents = {0}, other = {0};
+    shape_set *turned = NULL;
     shape_morph *morph = NULL;
     check_command(&common, &frames);
     plan(&job, &common);
     cli_save_check(&common);
-    cli_input input = read_input(&job, &contents);
-    job.set = input.set;
-    if (input.scene)
-        cli_picture_use_scene(input.scene);
-    cli_note_meshes(input.scene, "not drawn");
+    if (cli_save_wanted())
+        render_opaque_save_check();
+    view_opened opened = view_open(job.path, &job.generator), other = {0};
+    take_opened(&job, &opened);
+    if (common.argument_count > 1) {
+        view_generator none = view_generator_none(job.seed);
+        other = view_open(common.arguments[1], &none);
+        job.other_set = other.input.set;
+        job.other_watched = strcmp(job.other_path, "-") && !other.volume;
+    }
+    if (!opened.volume && !other.volume)
+        cli_refuse_volume_options();
+    if (opened.input.scene)
+        cli_picture_use_scene(opened.input.scene);
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
+    job.opaque = render_opaque_read(&opened.input);
+    job.options.light.opaque = job.opaque;
+    shape_scene *list = render_opaque_list();
+    job.more.list = list;
+    job.more.has_ground = render_opaque_ground(&job.more.height, job.more.ground_albedo);
+    job.scene_read = opened.input.scene;
+    check_opaque(&job);
     cli_picture_apply(job.set, &job.view, &job.light);
     memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
     if (morph_path) {
-        read_source(morph_path, &job.generator, &other);
-        cli_check(shape_morph_create(job.set, other.set, &morph, &error), &error);
+        view_generator none = view_generator_none(job.seed);
+        turned = view_open_source(morph_path, &none);
+        cli_check(shape_morph_create(job.set, turned, &morph, &error), &error);
         job.morph = morph;
     }
     if (frames_given) {
@@ -438,8 +461,11 @@ int main(int argc, char **argv)
     }
     view_job_free(&job);
     shape_morph_destroy(morph);
-    shape_set_destroy(other.set);
-    cli_picture_save_scene(&input, &job.view, &job.light, NULL);
-    cli_input_free(&input);
+    shape_set_destroy(turned);
+    cli_picture_save_scene(&opened.input, &job.view, &job.light, render_opaque_save);
+    shape_opaque_destroy(job.opaque);
+    shape_scene_destroy(list);
+    cli_input_free(&opened.input);
+    cli_input_free(&other.input);
     return cli_finish(&common);
 }

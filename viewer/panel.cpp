@@ -1,11 +1,14 @@
 // What lies over the picture, by Dear ImGui. It changes the state and says what was wished; it does no work of its own.
 #include "panel.h"
 
+#include "setting.h"
+
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -18,7 +21,8 @@ struct panel_memory {
     bool all_clouds = true;
     int shot_size[2] = {0, 0}; // 0: as the window is
     bool shot_alpha = false;
-    ImVec4 covered[2] = {}; // by the panel and by the help: left, top, right, bottom
+    char other[VIEW_PATH_MAX] = ""; // as it is being typed
+    ImVec4 covered[2] = {};         // by the panel and by the help: left, top, right, bottom
 };
 panel_memory memory;
 
@@ -109,32 +113,81 @@ bool section(const char *name, bool open = false)
 
 // --- sections ---
 
-void draw_generator(const view_panel_input &in, view_panel_wish &wish)
+// One option's widget; whether it was changed. Drags go by a hundredth of the value a pixel.
+bool turn_setting(const view_setting_row &row, view_setting &setting)
 {
-    if (!in.grammar || !section("Grammar", true))
+    double *n = setting.number;
+    if (row.kind == VIEW_SETTING_FLAG) {
+        bool on = n[0] != 0;
+        bool changed = ImGui::Checkbox(row.name, &on);
+        n[0] = on;
+        return changed;
+    }
+    if (row.kind == VIEW_SETTING_CHOICE) {
+        char words[256];
+        int length = std::snprintf(words, sizeof words - 1, "%s", row.choices),
+            chosen = static_cast<int>(n[0]);
+        for (int i = 0; i < length; i++)
+            words[i] = words[i] == '|' ? '\0' : words[i];
+        words[length + 1] = '\0';
+        bool changed = ImGui::Combo(row.name, &chosen, words);
+        n[0] = chosen;
+        return changed;
+    }
+    double largest = 0;
+    for (int i = 0; i < row.count; i++)
+        largest = largest < n[i] ? n[i] : largest < -n[i] ? -n[i] : largest;
+    bool whole = row.kind == VIEW_SETTING_INTEGER, bounded = row.min != 0 || row.max != 0;
+    float speed = static_cast<float>(whole ? 0.1 + largest * 0.01 : (largest > 0 ? largest : 1) * 0.01);
+    double before[3] = {n[0], n[1], n[2]};
+    ImGui::DragScalarN(row.name, ImGuiDataType_Double, n, row.count, speed, bounded ? &row.min : nullptr,
+                       bounded ? &row.max : nullptr, whole ? "%.0f" : "%.4g", ImGuiSliderFlags_AlwaysClamp);
+    for (int i = 0; i < row.count && whole; i++)
+        n[i] = std::floor(n[i] + 0.5);
+    if (row.range && n[0] > n[1])
+        n[n[0] != before[0] ? 0 : 1] = n[n[0] != before[0] ? 1 : 0];
+    return n[0] != before[0] || n[1] != before[1] || n[2] != before[2];
+}
+
+// What is not given is the generator's own choice, and grey.
+void draw_setting(const view_panel_input &in, const view_setting_row &row, int i)
+{
+    view_setting &setting = in.state->generator.settings[i];
+    const view_setting &start = in.base->generator.settings[i];
+    if (!setting.given)
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    bool was = setting.given;
+    if (turn_setting(row, setting))
+        setting.given = true;
+    bool reset = ImGui::IsItemClicked(ImGuiMouseButton_Right);
+    if (!was)
+        ImGui::PopStyleColor();
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("--%s: %s\nCtrl+click to type, right click to leave it to the generator", row.name,
+                          row.help);
+    if (!setting.given)
         return;
+    ImGui::SameLine();
+    ImGui::PushID(row.name);
+    reset = ImGui::SmallButton("x") || reset;
+    ImGui::PopID();
+    if (reset)
+        setting = view_setting{false, {start.number[0], start.number[1], start.number[2]}};
+}
+
+void draw_generator(const view_panel_input &in)
+{
     view_generator &g = in.state->generator;
-    static const int zero = 0;
-    const int file = in.base->generator.iterations, most = file > 6 ? 2 * file : 12;
-    float low = static_cast<float>(g.angle[0]), high = static_cast<float>(g.angle[1]);
+    const char *program = view_generator_program(&g);
+    view_setting_row row;
+    if (g.which < 0 || !section(program, true))
+        return;
     if (!in.watched)
-        ImGui::TextDisabled("not read again: standard input");
-    if (ImGui::SliderScalar("iterations", ImGuiDataType_S32, &g.iterations, &zero, &most, "%d",
-                            ImGuiSliderFlags_AlwaysClamp))
-        g.own_iterations = wish.generate = true;
-    if (ImGui::DragFloatRange2("angle", &low, &high, 0.5f, -180, 180, "%.4g deg", nullptr,
-                               ImGuiSliderFlags_AlwaysClamp)) {
-        g.angle[0] = static_cast<double>(low);
-        g.angle[1] = static_cast<double>(high);
-        g.own_angle = wish.generate = true;
-    }
+        ImGui::TextDisabled("not made again: standard input, or a morph");
+    for (int i = 0; view_setting_get_row(&g, i, &row); i++)
+        draw_setting(in, row, i);
     static const uint64_t one = 1;
-    if (ImGui::InputScalar("seed", ImGuiDataType_U64, &g.seed, &one))
-        wish.generate = true;
-    if ((g.own_iterations || g.own_angle) && ImGui::SmallButton("as the file says")) {
-        g.own_iterations = g.own_angle = false;
-        wish.generate = true;
-    }
+    ImGui::InputScalar("seed", ImGuiDataType_U64, &g.seed, &one);
 }
 
 int choose_cloud(const view_panel_input &in)
@@ -196,6 +249,22 @@ void draw_light(const view_panel_input &in)
         ImGui::ColorEdit3("radiance", s.sky_radiance, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
 }
 
+// Of a split picture: by which method, and of which file.
+void draw_right_half(const view_panel_input &in, view_panel_wish &wish, const char *methods)
+{
+    choose("right half", &in.state->other_method, methods);
+    bool entered = ImGui::InputTextWithHint("right file", "the same", memory.other, sizeof memory.other,
+                                            ImGuiInputTextFlags_EnterReturnsTrue);
+    if (!ImGui::IsItemActive() && !entered)
+        std::snprintf(memory.other, sizeof memory.other, "%s", in.other);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("a .neph or a grammar, then Enter; empty: the same file by another method");
+    if (!entered)
+        return;
+    wish.open_other = true;
+    std::snprintf(wish.other, sizeof wish.other, "%s", memory.other);
+}
+
 void draw_camera(const view_panel_input &in, view_panel_wish &wish)
 {
     if (!section("Camera and method", true))
@@ -205,7 +274,7 @@ void draw_camera(const view_panel_input &in, view_panel_wish &wish)
     choose("method", &s.method, methods);
     ImGui::Checkbox("split (X)", &s.split);
     if (s.split)
-        choose("right half", &s.other_method, methods);
+        draw_right_half(in, wish, methods);
     turn_group("Camera", in, 0);
     turn_group("Quality", in, 0);
     ImGui::InputScalarN("eye", ImGuiDataType_Double, s.eye, 3, nullptr, nullptr, "%.4g");
@@ -235,6 +304,7 @@ void draw_judging(const view_panel_input &in)
     int heat = static_cast<int>(s.heat);
     if (choose("heat (T)", &heat, "none\0steps, white at 64\0fetches, white at 128\0"))
         s.heat = static_cast<view_heat>(heat);
+    ImGui::Checkbox("difference from the reference (R)", &s.difference);
     ImGui::PlotHistogram("##times", in.times, VIEW_TIMES, 0, "ms a picture", 0, FLT_MAX,
                          ImVec2(width - 30, 50));
     ImGui::Text("read %.0f, set %.0f, light %.0f, bake %.0f, draw %.0f ms", in.read_ms, in.volume_ms,
@@ -262,16 +332,18 @@ void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoCollapse);
     ImGui::PushItemWidth(width - 140);
+    ImGui::PushAllowKeyboardFocus(false); // Tab folds the panel, and must not enter a number on the way
     wish.undo = ImGui::SmallButton("undo");
     ImGui::SameLine();
     wish.redo = ImGui::SmallButton("redo");
-    draw_generator(in, wish);
+    draw_generator(in);
     draw_light(in);
     draw_cloud(in);
     draw_camera(in, wish);
     draw_time(in, wish);
     draw_judging(in);
     draw_files(wish);
+    ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     memory.covered[0] = window_box();
     ImGui::End();
@@ -289,9 +361,10 @@ void draw_help(const ImVec2 &screen)
         {"Home", "first view"},
         {"+ -", "exposure"},
         {"Tab", "panel"},
-        {"X", "two methods, split; drag the line"},
+        {"X", "two methods or files, split; drag the line"},
         {"B, P", "boxes, primitives as wires"},
         {"T", "steps, then fetches a pixel as heat"},
+        {"R", "difference from the reference: red brighter, blue darker"},
         {"Space", "time runs, stops"},
         {"Ctrl+Z", "undo; Ctrl+Shift+Z: redo"},
         {"Ctrl+C", "copy the commands that make what is seen"},
@@ -332,6 +405,8 @@ void draw_notes(const view_panel_input &in, const ImVec2 &screen)
                       in.state->samples, in.draw_ms, in.primitives, in.doing);
         y = draw_note(status, ImVec2(6, y), most, IM_COL32(220, 220, 220, 255));
     }
+    if (in.difference[0])
+        y = draw_note(in.difference, ImVec2(6, y), most, IM_COL32(220, 200, 160, 255));
     if (in.said[0])
         y = draw_note(in.said, ImVec2(6, y), most, IM_COL32(170, 230, 170, 255));
     if (in.error[0])
@@ -357,21 +432,59 @@ void draw_wires(const view_panel_input &in, const ImVec2 &screen)
     view_wires_free(&wires);
 }
 
+// The difference, over the pixels that it was taken from; of a split picture only left of the line.
+void draw_map(const view_panel_input &in, const ImVec2 &screen)
+{
+    int pixels[2] = {0, 0};
+    glfwGetFramebufferSize(glfwGetCurrentContext(), &pixels[0], &pixels[1]);
+    float part[2], border[2];
+    for (int i = 0; i < 2; i++) {
+        float shown = static_cast<float>(in.map_size[i] * in.map_scale);
+        part[i] = shown / static_cast<float>(pixels[i]);
+        border[i] = (1 - part[i]) / 2;
+    }
+    ImVec2 low(border[0] * screen.x, border[1] * screen.y),
+        high(low.x + part[0] * screen.x, low.y + part[1] * screen.y);
+    float line = in.state->split ? screen.x * in.state->divider : high.x,
+          right = line < high.x ? line : high.x;
+    if (right <= low.x)
+        return;
+    ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(in.map)),
+                                             low, ImVec2(right, high.y), ImVec2(0, 0),
+                                             ImVec2((right - low.x) / (high.x - low.x), 1));
+}
+
+// A path's last part.
+const char *bare(const char *path)
+{
+    const char *slash = std::strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 void draw_picture(const view_panel_input &in, const ImVec2 &screen)
 {
     ImDrawList *list = ImGui::GetBackgroundDrawList();
     if (in.texture)
         list->AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(in.texture)), ImVec2(0, 0), screen,
                        ImVec2(0, 1), ImVec2(1, 0));
+    if (in.map)
+        draw_map(in, screen);
     draw_wires(in, screen);
     if (!in.state->split)
         return;
     static const char *const methods[] = {"default", "exact", "paper", "paper-ndt"};
-    float x = screen.x * in.state->divider;
+    const view_state &s = *in.state;
+    float x = screen.x * s.divider;
     list->AddLine(ImVec2(x, 0), ImVec2(x, screen.y), IM_COL32(255, 255, 255, 200), 2);
-    const char *left = methods[in.state->method];
-    list->AddText(ImVec2(x - 8 - ImGui::CalcTextSize(left).x, screen.y - 60), IM_COL32_WHITE, left);
-    list->AddText(ImVec2(x + 8, screen.y - 60), IM_COL32_WHITE, methods[in.state->other_method]);
+    char names[2][160];
+    const char *files[2] = {in.other[0] ? in.title : "", in.other};
+    const int chosen[2] = {s.method, s.other_method};
+    bool one_method = in.other[0] && s.method == s.other_method;
+    for (int i = 0; i < 2; i++)
+        std::snprintf(names[i], sizeof names[i], "%s%s%s", bare(files[i]),
+                      in.other[0] && !one_method ? ", " : "", one_method ? "" : methods[chosen[i]]);
+    list->AddText(ImVec2(x - 8 - ImGui::CalcTextSize(names[0]).x, screen.y - 60), IM_COL32_WHITE, names[0]);
+    list->AddText(ImVec2(x + 8, screen.y - 60), IM_COL32_WHITE, names[1]);
 }
 
 } // namespace

@@ -19,20 +19,26 @@ typedef struct view_panel_input {
     const view_state *base;                   /* what a value is put back to */
     unsigned texture;                         /* the picture; 0: none yet */
     const char *title, *doing, *error, *said; /* texts, empty where there is nothing to say */
+    const char *difference;                   /* what is said of the difference from the reference */
+    unsigned map;                             /* of the difference; 0: none */
+    int map_size[2], map_scale;               /* its pixels; those of the picture that one of them covers */
+    const char *other;                        /* the file of the right half; empty: the same */
     int samples;                              /* drawn so far */
     double draw_ms, light_ms, bake_ms, volume_ms, read_ms;
     double steps, fetches; /* a pixel, of the picture */
     size_t primitives, all_clouds;
     const float *times; /* of the last VIEW_TIMES pictures [ms], the oldest first */
-    bool grammar, watched, open, help, playing;
+    bool watched, open, help, playing;
     const shape_set *placed; /* for the wires; NULL */
 } view_panel_input;
 
 /* What was wished in a frame. */
 typedef struct view_panel_wish {
-    bool undo, redo, home, copy, generate, play;
+    bool undo, redo, home, copy, play;
     bool shoot, shoot_alpha;
     int shoot_size[2];
+    bool open_other;
+    char other[VIEW_PATH_MAX]; /* what to show in the right half; empty: the same file */
 } view_panel_wish;
 
 /* After the window's own callbacks have been set: ImGui calls them on. */

@@ -10,25 +10,11 @@
 #include <string.h>
 #include <time.h>
 
+#include "engine.h"
+#include "reference.h"
 #include "shot.h"
 
-enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50, QUICK_LIGHT = 14, QUICK_VOXELS = 250000 };
-
-/* A set as it is seen, ready to be drawn. It goes with the last engine that has it. */
-typedef struct scene {
-    view_shared *placed;
-    shape_volume *volume;
-    int uses;
-} scene;
-
-/* One renderer and how far it is. */
-typedef struct engine {
-    shape_gl_renderer *gl;
-    scene *scene; /* what it has loaded */
-    int method, resolution;
-    bool lit;        /* that is the present one, under the present light */
-    double pixel_ms; /* of the last picture */
-} engine;
+enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50 };
 
 struct view_renderer {
     view_render_start start;
@@ -38,17 +24,22 @@ struct view_renderer {
     /* Under the mutex. */
     bool stop, fresh, shoot;
     view_request wish;
-    view_shared *wish_set;
+    view_shown wished;
     view_shot wish_shot;
     view_picture picture;
+    float *radiance; /* of the picture that is done, see view_renderer_take_radiance; NULL */
+    uint64_t radiance_of;
     /* The thread's own. */
     view_request now;
-    view_shared *set;
-    scene *scene;
-    engine quick, full, other;
-    int sample; /* the next to draw */
+    view_shown shown;
+    view_scene *scene, *other_scene;
+    view_engine quick, full, other; /* other: the right half */
+    view_engine quick_other;        /* of another file */
+    int sample;                     /* the next to draw */
     double changed;
-    bool drawn; /* this wish has been shown in some way */
+    uint64_t content;
+    uint64_t kept; /* the content whose radiance was kept last */
+    bool drawn;    /* this wish has been shown in some way */
     GLuint textures[TARGETS], framebuffers[TARGETS];
     int sizes[TARGETS][2], next_target;
     double volume_ms;
@@ -102,33 +93,17 @@ static void bind_target(view_renderer *r, int width, int height)
     glBindFramebuffer(GL_FRAMEBUFFER, r->framebuffers[i]);
 }
 
-static void show(const view_renderer *r, const engine *e, int width, int height)
-{
-    float exposure = r->now.state.exposure;
-    switch (r->now.state.heat) {
-    case VIEW_HEAT_NONE:
-        shape_gl_show(e->gl, exposure, width, height);
-        break;
-    case VIEW_HEAT_STEPS:
-        shape_gl_show_work(e->gl, false, 64, width, height);
-        break;
-    case VIEW_HEAT_FETCHES:
-        shape_gl_show_work(e->gl, true, 128, width, height);
-        break;
-    }
-}
-
 /* Tone-maps what the engines have drawn and hands it to the window. right: NULL, or for the right part of a split. */
-static void publish(view_renderer *r, const engine *left, const engine *right, int width, int height,
-                    double ms)
+static void publish(view_renderer *r, const view_engine *left, const view_engine *right, int width,
+                    int height, double ms)
 {
     bind_target(r, width, height);
-    show(r, left, width, height);
+    view_engine_show(left, &r->now.state, width, height);
     if (right) {
         int x = (int)((float)width * r->now.state.divider);
         glEnable(GL_SCISSOR_TEST);
         glScissor(x, 0, width - x, height);
-        show(r, right, width, height);
+        view_engine_show(right, &r->now.state, width, height);
         glDisable(GL_SCISSOR_TEST);
     }
     glFinish(); /* the other context must find it whole */
@@ -143,6 +118,7 @@ static void publish(view_renderer *r, const engine *left, const engine *right, i
     p->volume_ms = r->volume_ms;
     p->number++;
     p->request = r->now.number;
+    p->content = r->content;
     if (p->placed != r->scene->placed) {
         view_shared_drop(p->placed);
         p->placed = view_shared_keep(r->scene->placed);
@@ -152,91 +128,61 @@ static void publish(view_renderer *r, const engine *left, const engine *right, i
     r->start.wake();
 }
 
-static void drop_scene(scene *old)
+static void drop_shown(view_shown *shown)
 {
-    if (!old || --old->uses)
-        return;
-    shape_volume_destroy(old->volume);
-    view_shared_drop(old->placed);
-    free(old);
+    view_shared_drop(shown->set);
+    view_shared_drop(shown->other);
+    view_things_drop(shown->things);
+    memset(shown, 0, sizeof *shown);
 }
 
-static void free_engine(engine *e)
+/* The scene of the right half: another file, or the same. */
+static view_scene *right_scene(const view_renderer *r)
 {
-    shape_gl_destroy(e->gl);
-    drop_scene(e->scene);
-    memset(e, 0, sizeof *e);
+    return r->other_scene ? r->other_scene : r->scene;
 }
 
-/* Makes an engine ready for the present scene and light. The quick one makes coarse grids and waits for them; the others
- * make fine ones, on a thread where they are of the default method. */
-static shape_status light_engine(view_renderer *r, engine *e, int method, shape_error *error)
+/* Whether two files are shown, so that the right half is drawn while the view moves, too. */
+static bool two_files(const view_renderer *r)
 {
-    bool quick = e == &r->quick;
-    int resolution = quick ? QUICK_LIGHT : r->now.state.light_grid;
-    shape_status status = SHAPE_OK;
-    if (e->gl && (e->method != method || e->resolution != resolution))
-        free_engine(e);
-    if (e->lit)
-        return SHAPE_OK;
-    if (!e->gl) {
-        shape_gl_options options = r->start.options;
-        options.method = (shape_gl_method)method;
-        options.light.resolution = resolution;
-        options.background = !quick;
-        if (quick)
-            options.bake_voxels = QUICK_VOXELS;
-        status = shape_gl_create(&options, &e->gl, error);
-        e->method = method;
-        e->resolution = resolution;
-    }
-    shape_light light = view_state_light(&r->now.state);
-    if (!status && e->scene != r->scene) {
-        status = shape_gl_load(e->gl, r->scene->volume, error);
-        drop_scene(e->scene);
-        e->scene = r->scene;
-        e->scene->uses++;
-    }
-    if (!status)
-        status = shape_gl_light(e->gl, &light, error);
-    if (status)
-        free_engine(e);
-    else
-        e->lit = true;
-    return status;
+    return r->now.state.split && r->other_scene;
 }
 
 static shape_status light_full(view_renderer *r, shape_error *error)
 {
     const view_state *s = &r->now.state;
-    shape_status status = light_engine(r, &r->full, s->method, error);
+    shape_status status =
+        view_engine_light(&r->full, &r->start.options, s, s->method, r->scene, r->shown.things, error);
     if (!status && s->split)
-        status = light_engine(r, &r->other, s->other_method, error);
+        status = view_engine_light(&r->other, &r->start.options, s, s->other_method, right_scene(r),
+                                   r->shown.things, error);
+    return status;
+}
+
+static shape_status light_quick(view_renderer *r, shape_error *error)
+{
+    const view_state *s = &r->now.state;
+    shape_status status = view_engine_light(&r->quick, &r->start.options, s, SHAPE_GL_DEFAULT, r->scene,
+                                            r->shown.things, error);
+    if (!status && two_files(r))
+        status = view_engine_light(&r->quick_other, &r->start.options, s, SHAPE_GL_DEFAULT, r->other_scene,
+                                   r->shown.things, error);
     return status;
 }
 
 /* How many pixels each way are drawn as one while the view moves, so that a picture takes no longer than the budget. */
-static int coarseness(const view_renderer *r, const engine *e)
+static int coarseness(const view_renderer *r, const view_engine *e, const view_engine *other)
 {
     double pixels = (double)r->now.width * (double)r->now.height;
-    int by = (int)ceil(sqrt(pixels * e->pixel_ms / BUDGET_MS)), most = e->method == SHAPE_GL_DEFAULT ? 3 : 6;
+    double pixel_ms = e->pixel_ms + (other ? other->pixel_ms : 0);
+    int by = (int)ceil(sqrt(pixels * pixel_ms / BUDGET_MS)), most = e->method == SHAPE_GL_DEFAULT ? 3 : 6;
     return by < 1 ? 1 : by > most ? most : by;
 }
 
-static shape_status draw_engine(view_renderer *r, engine *e, int width, int height, int sample,
+static shape_status draw_engine(view_renderer *r, view_engine *e, int width, int height, int sample,
                                 shape_error *error)
 {
-    shape_view view = view_state_view(&r->now.state, width, height);
-    bool moving = sample < 0;
-    double start = now_ms();
-    shape_status status =
-        moving ? shape_gl_draw_moving(e->gl, &view, error) : shape_gl_draw(e->gl, &view, sample, error);
-    shape_gl_finish();
-    if (moving && e->pixel_ms > 0)
-        e->pixel_ms = fmax(now_ms() - start, 0.1) / ((double)width * (double)height);
-    else if (moving)
-        e->pixel_ms = 1e-9; /* the first one made grids too, and tells nothing */
-    return status;
+    return view_engine_draw(e, &r->now.state, width, height, sample, error);
 }
 
 static bool has_wish(view_renderer *r)
@@ -249,7 +195,7 @@ static bool has_wish(view_renderer *r)
 
 /* A sample of one side of the picture, from x0 to x1. The slow methods draw it band by band and give up for a new wish,
  * which begins another picture. */
-static shape_status draw_side(view_renderer *r, engine *e, int x0, int x1, shape_error *error)
+static shape_status draw_side(view_renderer *r, view_engine *e, int x0, int x1, shape_error *error)
 {
     enum { BANDS = 12 };
     int height = r->now.height, width = r->now.width;
@@ -268,15 +214,19 @@ static shape_status draw_side(view_renderer *r, engine *e, int x0, int x1, shape
     return status;
 }
 
-/* A picture for the moment. */
-static shape_status draw_moving(view_renderer *r, engine *e, shape_error *error)
+/* A picture for the moment; right: of another file, or NULL. */
+static shape_status draw_moving(view_renderer *r, view_engine *e, view_engine *right, shape_error *error)
 {
-    int by = coarseness(r, e), width = (r->now.width + by - 1) / by, height = (r->now.height + by - 1) / by;
+    int by = coarseness(r, e, right), width = (r->now.width + by - 1) / by,
+        height = (r->now.height + by - 1) / by;
     double start = now_ms();
     shape_status status = draw_engine(r, e, width, height, -1, error);
+    double ms = now_ms() - start;
+    if (!status && right)
+        status = draw_engine(r, right, width, height, -1, error);
     r->sample = 0;
     if (!status)
-        publish(r, e, NULL, width, height, now_ms() - start);
+        publish(r, e, right, width, height, ms);
     r->drawn = true;
     return status;
 }
@@ -332,26 +282,21 @@ static shape_status draw_sample(view_renderer *r, shape_error *error)
     return status;
 }
 
-static shape_status make_scene(view_renderer *r, shape_error *error)
+static shape_status make_scenes(view_renderer *r, shape_error *error)
 {
     double start = now_ms();
-    shape_set *made;
-    scene *next = calloc(1, sizeof *next);
-    if (!next)
-        return shape_error_memory(error);
-    next->uses = 1;
-    shape_status status =
-        view_state_set(&r->now.state, view_shared_set(r->set), r->start.morph, &made, error);
-    if (!status) {
-        next->placed = view_shared_make(made);
-        status = next->placed ? shape_volume_create(made, &next->volume, error) : shape_error_memory(error);
-    }
+    view_scene *next = NULL, *other = NULL;
+    shape_status status = view_scene_make(&r->now.state, r->shown.set, true, r->start.morph, &next, error);
+    if (!status && r->shown.other)
+        status = view_scene_make(&r->now.state, r->shown.other, false, NULL, &other, error);
     if (status) {
-        drop_scene(next);
+        view_scene_drop(next);
         return status;
     }
-    drop_scene(r->scene);
+    view_scene_drop(r->scene);
+    view_scene_drop(r->other_scene);
     r->scene = next;
+    r->other_scene = other;
     r->volume_ms = now_ms() - start;
     return SHAPE_OK;
 }
@@ -366,10 +311,13 @@ static bool same_picture(const view_request *was, const view_request *is)
     other.number = is->number;
     other.state.exposure = is->state.exposure;
     other.state.heat = is->state.heat;
+    other.state.difference = is->state.difference;
     other.state.boxes = is->state.boxes;
     other.state.outlines = is->state.outlines;
     other.state.samples = is->state.samples;
     other.state.generator = is->state.generator; /* makes another set in time */
+    if (is->state.method == SHAPE_GL_DEFAULT && is->state.other_method == SHAPE_GL_DEFAULT)
+        other.state.divider = is->state.divider; /* both halves are drawn whole */
     return !memcmp(&other, is, sizeof other);
 }
 
@@ -379,39 +327,38 @@ static bool moves_in_time(const view_renderer *r, const view_state *s)
 }
 
 /* Takes a wish over; false where nothing can be drawn. */
-static bool adopt(view_renderer *r, const view_request *wish, view_shared *set)
+static bool adopt(view_renderer *r, const view_request *wish, const view_shown *shown)
 {
     view_state *was = &r->now.state;
     const view_state *is = &wish->state;
     bool other_time = was->time != is->time && moves_in_time(r, is);
-    bool clouds = !r->scene || set != r->set || other_time || !view_state_same_clouds(was, is);
+    bool clouds = !r->scene || shown->set != r->shown.set || shown->other != r->shown.other ||
+                  shown->things != r->shown.things || other_time || !view_state_same_clouds(was, is);
     bool light = clouds || !view_state_same_light(was, is);
     bool grid = was->light_grid != is->light_grid || was->method != is->method ||
                 was->other_method != is->other_method || was->split != is->split;
-    bool same =
-        !clouds && set == r->set && r->drawn && r->full.lit && r->sample && same_picture(&r->now, wish);
-    if (set != r->set) {
-        view_shared_drop(r->set);
-        r->set = set;
-    } else {
-        view_shared_drop(set);
-    }
+    bool same = !clouds && r->drawn && r->full.lit && r->sample && same_picture(&r->now, wish);
+    drop_shown(&r->shown);
+    r->shown = *shown;
+    if (is->difference && !was->difference)
+        r->kept = 0;
     memcpy(&r->now, wish, sizeof *wish);
     if (same) {
         publish(r, &r->full, is->split ? &r->other : NULL, wish->width, wish->height, r->picture.draw_ms);
         return true;
     }
+    r->content++;
     r->sample = 0;
     r->changed = now_ms();
     r->drawn = false;
     if (light)
-        r->quick.lit = false;
+        r->quick.lit = r->quick_other.lit = false;
     if (light || grid)
         r->full.lit = r->other.lit = false;
     shape_error error;
     if (!clouds)
         return r->scene != NULL;
-    if (make_scene(r, &error)) {
+    if (make_scenes(r, &error)) {
         tell(r, error.text, true);
         return r->scene != NULL;
     }
@@ -423,8 +370,10 @@ static void take_shot(view_renderer *r, const view_shot *s)
 {
     shape_error error;
     char text[512];
+    shape_gl_options options = r->start.options;
+    options.light.opaque = view_things_get(r->shown.things);
     say(r, "screenshot");
-    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &r->start.options, &error);
+    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &options, &error);
     if (status)
         snprintf(text, sizeof text, "screenshot: %.480s", error.text);
     else
@@ -463,10 +412,13 @@ static shape_status step(view_renderer *r, shape_error *error)
     bool rests = now_ms() - r->changed > REST_MS;
     shape_status status = SHAPE_OK;
     if (!r->drawn && (!full || !rests)) {
-        engine *e = r->full.lit ? &r->full : &r->quick;
-        if (!e->lit)
-            status = light_engine(r, e, SHAPE_GL_DEFAULT, error);
-        return status ? status : draw_moving(r, e, error);
+        bool two = two_files(r), fine = r->full.lit && (!two || r->other.lit);
+        if (!fine)
+            status = light_quick(r, error);
+        if (status)
+            return status;
+        return draw_moving(r, fine ? &r->full : &r->quick, two ? (fine ? &r->other : &r->quick_other) : NULL,
+                           error);
     }
     if (!rests)
         return SHAPE_OK;
@@ -481,6 +433,40 @@ static shape_status step(view_renderer *r, shape_error *error)
     return r->sample < s->samples ? draw_sample(r, error) : SHAPE_OK;
 }
 
+/* Keeps the radiance of a picture that is done. */
+static shape_status keep_radiance(view_renderer *r, shape_error *error)
+{
+    int width = r->now.width, height = r->now.height;
+    float *rgba = malloc((size_t)width * (size_t)height * 4 * sizeof *rgba);
+    r->kept = r->content; /* one try */
+    if (!rgba)
+        return shape_error_memory(error);
+    shape_status status = shape_gl_read(r->full.gl, rgba, error);
+    float *small = status ? NULL : view_reference_reduce(rgba, width, height);
+    free(rgba);
+    if (!small)
+        return status ? status : shape_error_memory(error);
+    pthread_mutex_lock(&r->mutex);
+    free(r->radiance);
+    r->radiance = small;
+    r->radiance_of = r->content;
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+    return SHAPE_OK;
+}
+
+float *view_renderer_take_radiance(view_renderer *r, uint64_t content)
+{
+    float *taken = NULL;
+    pthread_mutex_lock(&r->mutex);
+    if (r->radiance && r->radiance_of == content) {
+        taken = r->radiance;
+        r->radiance = NULL;
+    }
+    pthread_mutex_unlock(&r->mutex);
+    return taken;
+}
+
 static void *render_thread(void *context)
 {
     view_renderer *r = context;
@@ -490,6 +476,9 @@ static void *render_thread(void *context)
     bool broken = false;
     r->start.make_current(r->start.context, true);
     for (bool stop = !wish || !wanted; !stop;) {
+        bool done = r->scene && r->full.lit && !broken && is_idle(r);
+        if (done && r->now.state.difference && r->kept != r->content && keep_radiance(r, &error))
+            tell(r, error.text, true);
         pthread_mutex_lock(&r->mutex);
         bool idle = is_idle(r) || broken;
         if (idle && !r->fresh && !r->shoot && !r->stop) {
@@ -503,22 +492,22 @@ static void *render_thread(void *context)
             sleep_until(r, REST_MS - (now_ms() - r->changed) + 1);
         stop = r->stop;
         bool fresh = r->fresh, shoot = r->shoot;
-        view_shared *set = NULL;
+        view_shown shown = {0};
         if (fresh) {
             memcpy(wish, &r->wish, sizeof *wish);
-            set = r->wish_set;
-            r->wish_set = NULL;
+            shown = r->wished;
+            memset(&r->wished, 0, sizeof r->wished);
         }
         if (shoot)
             memcpy(wanted, &r->wish_shot, sizeof *wanted);
         r->fresh = r->shoot = false;
         pthread_mutex_unlock(&r->mutex);
         if (stop) {
-            view_shared_drop(set);
+            drop_shown(&shown);
             break;
         }
         if (fresh)
-            broken = !adopt(r, wish, set);
+            broken = !adopt(r, wish, &shown);
         if (shoot && r->scene)
             take_shot(r, wanted);
         if (!broken && !is_idle(r) && step(r, &error)) {
@@ -528,9 +517,10 @@ static void *render_thread(void *context)
     }
     free(wish);
     free(wanted);
-    free_engine(&r->quick);
-    free_engine(&r->full);
-    free_engine(&r->other);
+    view_engine_free(&r->quick);
+    view_engine_free(&r->quick_other);
+    view_engine_free(&r->full);
+    view_engine_free(&r->other);
     glDeleteTextures(TARGETS, r->textures);
     glDeleteFramebuffers(TARGETS, r->framebuffers);
     r->start.make_current(r->start.context, false);
@@ -546,6 +536,7 @@ view_renderer *view_renderer_start(const view_render_start *start, shape_error *
     }
     r->start = *start;
     r->picture.doing = "";
+    r->quick.quick = r->quick_other.quick = true;
     pthread_mutex_init(&r->mutex, NULL);
     pthread_cond_init(&r->asked, NULL);
     int failed = pthread_create(&r->thread, NULL, render_thread, r);
@@ -565,20 +556,24 @@ void view_renderer_stop(view_renderer *r)
     pthread_cond_signal(&r->asked);
     pthread_mutex_unlock(&r->mutex);
     pthread_join(r->thread, NULL);
-    view_shared_drop(r->wish_set);
-    view_shared_drop(r->set);
+    drop_shown(&r->wished);
+    free(r->radiance);
+    drop_shown(&r->shown);
     view_shared_drop(r->picture.placed);
-    drop_scene(r->scene);
+    view_scene_drop(r->scene);
+    view_scene_drop(r->other_scene);
     pthread_cond_destroy(&r->asked);
     pthread_mutex_destroy(&r->mutex);
     free(r);
 }
 
-void view_renderer_ask(view_renderer *r, const view_request *request, view_shared *set)
+void view_renderer_ask(view_renderer *r, const view_request *request, const view_shown *shown)
 {
     pthread_mutex_lock(&r->mutex);
-    view_shared_drop(r->wish_set);
-    r->wish_set = view_shared_keep(set);
+    drop_shown(&r->wished);
+    r->wished.set = view_shared_keep(shown->set);
+    r->wished.other = view_shared_keep(shown->other);
+    r->wished.things = view_things_keep(shown->things);
     memcpy(&r->wish, request, sizeof *request);
     r->fresh = true;
     r->picture.done = false;
@@ -595,6 +590,7 @@ void view_renderer_shoot(view_renderer *r, const char *path, int width, int heig
     r->wish_shot.width = width;
     r->wish_shot.height = height;
     r->wish_shot.alpha = alpha;
+    r->wish_shot.largest = r->start.largest;
     r->shoot = true;
     r->picture.done = false;
     pthread_cond_signal(&r->asked);

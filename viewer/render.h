@@ -5,6 +5,7 @@
 
 #include "shape_gl.h"
 #include "state.h"
+#include "things.h"
 
 /* A set that several threads look at; it goes with the last of them. */
 typedef struct view_shared view_shared;
@@ -34,6 +35,7 @@ typedef struct view_picture {
     double draw_ms, volume_ms;
     uint64_t number;  /* grows with each picture */
     uint64_t request; /* the number of the request that it shows */
+    uint64_t content; /* grows where what is to be drawn is another, and not only how it is shown */
     char text[512];   /* what went wrong, or what was written; empty */
     bool text_is_error;
     view_shared *placed; /* the set as it is seen; the caller drops it. NULL: nothing yet */
@@ -45,15 +47,25 @@ typedef struct view_render_start {
     void (*make_current)(void *context, bool current);
     void *context;
     void (*wake)(void); /* called from the thread when there is something new */
+    int largest;        /* side of what is drawn at once, of screenshots; 0: what the GPU can */
 } view_render_start;
 
 view_renderer *view_renderer_start(const view_render_start *start, shape_error *error);
 void view_renderer_stop(view_renderer *renderer); /* NULL is allowed */
-/* Asks for a picture; the newest wish counts. `set` is kept. */
-void view_renderer_ask(view_renderer *renderer, const view_request *request, view_shared *set);
+/* What is shown. */
+typedef struct view_shown {
+    view_shared *set, *other; /* other: the file of the right half, or NULL for the same in both */
+    view_things *things;      /* what is opaque in both; NULL */
+} view_shown;
+
+/* Asks for a picture; the newest wish counts. What is shown is kept. */
+void view_renderer_ask(view_renderer *renderer, const view_request *request, const view_shown *shown);
 /* Asks for a picture file besides: width x height, of all samples. `comment` is kept in the file. */
 void view_renderer_shoot(view_renderer *renderer, const char *path, int width, int height, bool alpha,
                          const char *comment);
+/* Where the state asks for the difference and the picture of that content is done: its radiance in the smaller size of
+ * reference.h, which the caller frees. NULL else. Once a content. */
+float *view_renderer_take_radiance(view_renderer *renderer, uint64_t content);
 /* What there is to show now. */
 void view_renderer_look(view_renderer *renderer, view_picture *picture);
 

@@ -1,4 +1,4 @@
-/* A set that the window's thread and the drawing one look at. */
+/* What the window's thread, the drawing one and the reference's look at: sets, and what is opaque. */
 #include <stdatomic.h>
 #include <stdlib.h>
 
@@ -39,4 +39,43 @@ void view_shared_drop(view_shared *shared)
 const shape_set *view_shared_set(const view_shared *shared)
 {
     return shared->set;
+}
+
+/* --- what is opaque --- */
+
+struct view_things {
+    shape_opaque *opaque;
+    atomic_int uses;
+};
+
+view_things *view_things_make(shape_opaque *opaque)
+{
+    view_things *things = malloc(sizeof *things);
+    if (!things) {
+        shape_opaque_destroy(opaque);
+        return NULL;
+    }
+    things->opaque = opaque;
+    atomic_init(&things->uses, 1);
+    return things;
+}
+
+view_things *view_things_keep(view_things *things)
+{
+    if (things)
+        atomic_fetch_add(&things->uses, 1);
+    return things;
+}
+
+void view_things_drop(view_things *things)
+{
+    if (things && atomic_fetch_sub(&things->uses, 1) == 1) {
+        shape_opaque_destroy(things->opaque);
+        free(things);
+    }
+}
+
+const shape_opaque *view_things_get(const view_things *things)
+{
+    return things ? things->opaque : NULL;
 }

@@ -1,4 +1,5 @@
-/* Screenshots: drawn by a renderer of their own, so by the fine grids alone and of any size that the GPU draws. */
+/* Screenshots: drawn by a renderer of their own, so by the fine grids alone, and in parts where they are
+ * larger than what the GPU draws at once. */
 #include "shot.h"
 
 #include <stdlib.h>
@@ -7,27 +8,24 @@
 #include "view.h"
 
 static shape_status draw_shot(const view_shot *s, const view_state *state, const shape_volume *volume,
-                              shape_gl_renderer *gl, shape_error *error)
+                              shape_gl_renderer *gl, shape_image **image, shape_error *error)
 {
     shape_view view = view_state_view(state, s->width, s->height);
     shape_light light = view_state_light(state);
     shape_status status = shape_gl_load(gl, volume, error);
     if (!status)
         status = shape_gl_light(gl, &light, error);
-    for (int i = 0; i < state->samples && !status; i++) {
-        status = shape_gl_draw(gl, &view, i, error);
-        shape_gl_finish();
-    }
+    const view_plan plan = {.samples = state->samples, .largest = s->largest, .alpha = s->alpha};
+    if (!status)
+        status = view_draw_image(gl, &view, &plan, image, error);
     return status;
 }
 
-static shape_status write_shot(const view_shot *s, float exposure, shape_gl_renderer *gl, shape_error *error)
+static shape_status write_shot(const view_shot *s, float exposure, const shape_image *image,
+                               shape_error *error)
 {
     shape_image_format format;
-    shape_image *image;
     shape_status status = shape_image_format_find(s->path, &format, error);
-    if (!status)
-        status = view_read_image(gl, s->width, s->height, s->alpha, &image, error);
     if (status)
         return status;
     const shape_image_text text = {"nephele", s->comment};
@@ -38,7 +36,6 @@ static shape_status write_shot(const view_shot *s, float exposure, shape_gl_rend
     unsigned char *bytes;
     size_t size;
     status = shape_image_encode(image, format, &options, &bytes, &size, error);
-    shape_image_destroy(image);
     if (status)
         return status;
     status = shape_file_write(s->path, bytes, size, error);
@@ -58,9 +55,12 @@ shape_status view_shot_take(const view_shot *s, const view_state *state, const s
     shape_status status = shape_gl_create(&options, &gl, error);
     if (status)
         return status;
-    status = draw_shot(s, state, volume, gl, error);
-    if (!status)
-        status = write_shot(s, state->exposure, gl, error);
+    shape_image *image = NULL;
+    status = draw_shot(s, state, volume, gl, &image, error);
     shape_gl_destroy(gl);
+    if (status)
+        return status;
+    status = write_shot(s, state->exposure, image, error);
+    shape_image_destroy(image);
     return status;
 }

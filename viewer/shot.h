@@ -8,6 +8,7 @@
 typedef struct view_shot {
     char path[4096], comment[8192]; /* comment: kept in the file as the text "nephele" */
     int width, height;
+    int largest; /* side of what is drawn at once; 0: what the GPU can */
     bool alpha;
 } view_shot;
 

@@ -1,11 +1,13 @@
-/* The file that is shown: a .neph as it stands, a grammar as neph-lsys derives it. */
+/* What is shown: a .neph as it stands, a grammar as neph-lsys derives it, what a generator's program makes. */
 #include "source.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli.h"
+#include "cli_scene.h"
+#include "run.h"
+#include "setting.h"
 #include "shape/file.h"
 #include "shape/neph.h"
 #include "shape/turtle.h"
@@ -59,22 +61,39 @@ static shape_status grow(const shape_grammar *grammar, const shape_derive_option
     return shape_cloud_choose_noise_scale(cloud, shape_set_list(set, 0), error);
 }
 
+/* A range of the settings over the file's; what is in force then goes back into the settings. */
+static void use_range(view_generator *used, const char *name, shape_grammar_range *range)
+{
+    view_setting *setting = &used->settings[view_setting_find(used, name)];
+    if (setting->given) {
+        range->low = setting->number[0];
+        range->high = setting->number[1];
+    }
+    setting->number[0] = range->low;
+    setting->number[1] = range->high;
+}
+
+static void use_settings(view_generator *used, shape_derive_options *options)
+{
+    view_setting *iterations = &used->settings[view_setting_find(used, "iterations")];
+    if (iterations->given)
+        options->iterations = (int)iterations->number[0];
+    iterations->number[0] = options->iterations;
+    use_range(used, "angle", &options->angle);
+    use_range(used, "radius", &options->radius);
+    use_range(used, "length", &options->length);
+    use_range(used, "shrink", &options->shrink);
+}
+
 static shape_status derive(const shape_grammar *grammar, const view_generator *generator, const char *path,
                            const char *shown, view_contents *contents, shape_error *error)
 {
     shape_derive_options options = shape_derive_defaults(grammar);
     options.seed = generator->seed;
-    if (generator->own_iterations)
-        options.iterations = generator->iterations;
-    if (generator->own_angle) {
-        options.angle.low = generator->angle[0];
-        options.angle.high = generator->angle[1];
-    }
-    contents->grammar = true;
-    contents->used = *generator;
-    contents->used.iterations = options.iterations;
-    contents->used.angle[0] = options.angle.low;
-    contents->used.angle[1] = options.angle.high;
+    contents->used = view_generator_named("neph-lsys", generator->seed);
+    if (contents->used.which == generator->which)
+        contents->used = *generator;
+    use_settings(&contents->used, &options);
     contents->set = shape_set_create(error);
     if (!contents->set)
         return SHAPE_ERROR_MEMORY;
@@ -112,6 +131,7 @@ shape_status view_source_decode(const char *path, const unsigned char *bytes, si
     const char *shown = strcmp(path, "-") ? path : "standard input";
     shape_status status;
     memset(contents, 0, sizeof *contents);
+    contents->used = view_generator_none(generator->seed);
     mistakes[0] = 0;
     if (is_grammar(path, bytes, size)) {
         status = read_grammar(path, shown, bytes, size, generator, contents, mistakes, room, error);
@@ -127,18 +147,118 @@ shape_status view_source_decode(const char *path, const unsigned char *bytes, si
     return status;
 }
 
-shape_status view_source_read(const char *path, const view_generator *generator, view_contents *contents,
-                              char *mistakes, size_t room, shape_error *error)
+enum { ARGUMENTS_MAX = VIEW_SETTINGS_MAX + 6, ARGUMENT_ROOM = 160 };
+
+/* What a generator's program makes. */
+static shape_status run_generator(const char *path, view_run *run, view_contents *contents, char *mistakes,
+                                  size_t room, shape_error *error)
+{
+    char texts[ARGUMENTS_MAX][ARGUMENT_ROOM], *arguments[ARGUMENTS_MAX] = {0};
+    const view_generator *generator = &contents->used;
+    const char *name = view_generator_program(generator);
+    view_setting_row row;
+    size_t count = 0;
+    arguments[count++] = (char *)name;
+    arguments[count++] = (char *)"-q";
+    snprintf(texts[0], ARGUMENT_ROOM, "--seed=%llu", (unsigned long long)generator->seed);
+    arguments[count++] = texts[0];
+    for (int i = 0; view_setting_get_row(generator, i, &row); i++) {
+        char value[ARGUMENT_ROOM / 2], *text = texts[i + 1];
+        if (!generator->settings[i].given)
+            continue;
+        view_setting_text(&row, &generator->settings[i], value, sizeof value);
+        snprintf(text, ARGUMENT_ROOM, "--%.40s%s%s", row.name, value[0] ? "=" : "", value);
+        arguments[count++] = text;
+    }
+    arguments[count++] = (char *)"--";
+    if (path[0])
+        arguments[count++] = (char *)path;
+    unsigned char *bytes;
+    size_t size;
+    shape_status status = view_run_program(run, arguments, &bytes, &size, mistakes, room, error);
+    if (status)
+        return status;
+    status = shape_neph_decode(bytes, size, &contents->set, error);
+    free(bytes);
+    if (status)
+        snprintf(mistakes, room, "%s: %.400s", name, error->text);
+    return status;
+}
+
+/* A scene: light, camera and things are read here, its clouds made by a program that can be ended, and that may end by
+ * a mistake in any of its files. */
+static shape_status read_scene(const char *path, const unsigned char *bytes, size_t size, view_run *run,
+                               view_contents *contents, char *mistakes, size_t room, shape_error *error)
+{
+    char *arguments[] = {(char *)"neph-edit", (char *)"-q", NULL, NULL, NULL, NULL};
+    size_t count = 2, made_size;
+    unsigned char *made;
+    if (cli_outside_allowed())
+        arguments[count++] = (char *)"--allow-outside";
+    arguments[count++] = (char *)"--";
+    arguments[count] = (char *)path;
+    contents->used = view_generator_none(contents->used.seed);
+    shape_status status = shape_scene_decode(bytes, size, path, &contents->scene, error);
+    if (!status)
+        status = view_run_program(run, arguments, &made, &made_size, mistakes, room, error);
+    if (status)
+        return status;
+    status = shape_neph_decode(made, made_size, &contents->set, error);
+    free(made);
+    return status;
+}
+
+void view_contents_free(view_contents *contents)
+{
+    shape_set_destroy(contents->set);
+    shape_scene_destroy(contents->scene);
+    shape_opaque_destroy(contents->opaque);
+    contents->set = NULL;
+    contents->scene = NULL;
+    contents->opaque = NULL;
+}
+
+static shape_status read_any(const char *path, const view_generator *generator, view_run *run,
+                             view_contents *contents, char *mistakes, size_t room, shape_error *error)
 {
     unsigned char *bytes;
     size_t size;
-    memset(contents, 0, sizeof *contents);
+    contents->used = *generator;
+    if (generator->which < 0)
+        contents->used = view_generator_of_path(path, generator->seed);
+    const char *program = view_generator_program(&contents->used);
+    if (program[0] && strcmp(program, "neph-lsys"))
+        return run_generator(path, run, contents, mistakes, room, error);
     shape_status status = shape_file_read(path, MAX_SET_FILE, &bytes, &size, error);
     if (status) {
         snprintf(mistakes, room, "%s", error->text);
         return status;
     }
-    status = view_source_decode(path, bytes, size, generator, contents, mistakes, room, error);
+    if (shape_scene_is(bytes, size))
+        status = read_scene(path, bytes, size, run, contents, mistakes, room, error);
+    else
+        status = view_source_decode(path, bytes, size, generator, contents, mistakes, room, error);
     free(bytes);
+    return status;
+}
+
+shape_status view_source_read(const char *path, const view_generator *generator, view_run *run,
+                              const view_more_things *more, bool things, view_contents *contents,
+                              char *mistakes, size_t room, shape_error *error)
+{
+    static const view_more_things none;
+    memset(contents, 0, sizeof *contents);
+    mistakes[0] = 0;
+    shape_status status = read_any(path, generator, run, contents, mistakes, room, error);
+    if (!status && (things || contents->scene)) {
+        status = view_things_read(contents->scene, path, cli_outside_allowed(), more ? more : &none,
+                                  &contents->opaque, error);
+        contents->things_read = true;
+    }
+    if (status) {
+        view_contents_free(contents);
+        if (!mistakes[0])
+            snprintf(mistakes, room, "%s", error->text);
+    }
     return status;
 }

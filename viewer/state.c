@@ -61,10 +61,9 @@ void view_state_merge(view_state *state, const view_state *base, const view_stat
         memcpy(own.origin, n->origin, sizeof own.origin);
         memcpy(c, &own, sizeof own);
     }
-    if (!state->generator.own_iterations)
-        state->generator.iterations = next->generator.iterations;
-    if (!state->generator.own_angle)
-        memcpy(state->generator.angle, next->generator.angle, sizeof state->generator.angle);
+    for (int i = 0; i < VIEW_SETTINGS_MAX; i++)
+        if (!state->generator.settings[i].given && !next->generator.settings[i].given) /* the file's own */
+            state->generator.settings[i] = next->generator.settings[i];
 }
 
 shape_view view_state_view(const view_state *state, int width, int height)

@@ -41,6 +41,7 @@ typedef struct view_state {
     bool split, boxes, outlines; /* outlines: the primitives as wires */
     float divider;               /* of the split picture, a share of the width */
     view_heat heat;
+    bool difference; /* from the reference, as a map */
     view_generator generator;
     int cloud_count; /* of clouds */
     view_cloud clouds[VIEW_CLOUDS_MAX];
@@ -104,10 +105,11 @@ void view_history_merge(view_history *history, const view_state *base, const vie
 /* --- command.c: the commands that make what is seen --- */
 
 typedef struct view_command {
-    const char *path;    /* the opened file */
+    const char *path;    /* the opened file; "" where a generator takes none */
     const char *morph;   /* the one that it turns into, or NULL */
     const char *opening; /* options to open it with, or "" */
-    bool grammar, alpha, paper_lod;
+    const char *things;  /* --mesh and --ground, or "" */
+    bool alpha, paper_lod;
     bool volume; /* the file is one that neph-edit does not take */
     bool scene;  /* the file has light of its own */
     int size[2];

@@ -2,7 +2,7 @@
 #ifndef NEPHELE_VIEW_H
 #define NEPHELE_VIEW_H
 
-#include "cli.h"
+#include "cli_scene.h"
 #include "moment.h"
 #include "shape/image.h"
 #include "shape_gl.h"
@@ -10,25 +10,47 @@
 
 /* What the command line asked for. */
 typedef struct view_job {
-    const shape_set *set;     /* at rest */
-    const shape_morph *morph; /* NULL: none */
-    shape_set *moved;         /* as it is at the time that is drawn */
-    shape_volume *volume;     /* of moved */
-    shape_view view;          /* at time 0 */
-    shape_light light;        /* at time 0 */
+    const shape_set *set;          /* at rest */
+    const shape_set *other_set;    /* of a second file, right of the divider; NULL */
+    float divider;                 /* a share of the width */
+    const shape_morph *morph;      /* NULL: none */
+    shape_opaque *opaque;          /* what is opaque; NULL where nothing is */
+    view_more_things more;         /* of what is opaque, that of the command line, for reading it again */
+    const shape_scene *scene_read; /* NULL */
+    shape_set *moved;              /* as it is at the time that is drawn */
+    shape_volume *volume;          /* of moved */
+    shape_view view;               /* at time 0 */
+    shape_light light;             /* at time 0 */
     view_course course;
     double time; /* of a picture without a window [s] */
     shape_gl_options options;
     const char *path, *title, *morph_path; /* morph_path: NULL where nothing turns into anything */
-    view_generator generator;              /* of a grammar */
+    const char *other_path;                /* NULL */
+    bool other_watched;                    /* it is a file that can be watched */
+    view_generator generator;              /* what makes the first file's cloud */
     char opening[1024];                    /* options that belong to the file, as they were given */
-    bool grammar, scene, alpha;
+    char things[4096];                     /* --mesh and --ground, as they were given */
+    bool scene, alpha;
     bool volume_file; /* a .vdb or raw floats: nothing edits it */
     int samples;      /* of a picture without a window, and of a window at rest */
+    int largest;      /* side of what is drawn at once; 0: what the GPU can */
     double load_ms;
     uint64_t seed; /* as given */
     double sun[2]; /* azimuth and height, degrees, as given */
 } view_job;
+
+/* input.c: what the command line opens. */
+typedef struct view_opened {
+    cli_input input;     /* freed by cli_input_free */
+    view_generator used; /* what made it */
+    bool scene;
+    bool volume; /* a .vdb or raw floats */
+} view_opened;
+
+/* Reads a scene, a .neph, a grammar, a mesh or a volume; path "": what the generator makes. Mistakes end the program. */
+view_opened view_open(const char *path, const view_generator *generator);
+/* A .neph or a grammar alone. The caller destroys the set. */
+shape_set *view_open_source(const char *path, const view_generator *generator);
 
 /* window.c: opens the window and stays until it is closed. Errors: SHAPE_ERROR_SYSTEM where there is no display. */
 shape_status view_window(view_job *job, shape_error *error);
@@ -41,9 +63,28 @@ void view_job_free(view_job *job);
 /* What the renderer has drawn, of the view's size, as an image; with alpha where asked for. */
 shape_status view_read_image(shape_gl_renderer *renderer, int width, int height, bool alpha,
                              shape_image **image, shape_error *error);
+/* How a picture is drawn. */
+typedef struct view_plan {
+    int samples; /* a pixel */
+    int largest; /* side of what is drawn at once [pixels]; 0: what the GPU can */
+    bool alpha;
+    void (*progress)(const char *what, double done); /* NULL: none */
+} view_plan;
+
+/* Draws all samples of a picture, in parts where it is larger than the plan's largest. The caller destroys *image. */
+shape_status view_draw_image(shape_gl_renderer *renderer, const shape_view *view, const view_plan *plan,
+                             shape_image **image, shape_error *error);
+/* The same, encoded in the format that the output's name asks for. */
+shape_status view_encode_drawn(shape_gl_renderer *renderer, const shape_view *view, const view_plan *plan,
+                               const char *output, unsigned char **bytes, size_t *size, shape_error *error);
 /* Encodes what the renderer has drawn, in the format that the output's name asks for. */
 shape_status view_encode(shape_gl_renderer *renderer, const shape_view *view, bool alpha, const char *output,
                          unsigned char **bytes, size_t *size, shape_error *error);
+
+/* The same of two files: the job's clouds left of the divider, its other ones, where they are at the job's time, right of
+ * it. Draws both; an OpenGL context is current. */
+shape_status view_encode_split(const view_job *job, const shape_view *view, const shape_light *light,
+                               const char *output, unsigned char **bytes, size_t *size, shape_error *error);
 
 /* within.c: a picture to an allowed error. */
 typedef struct view_quality {

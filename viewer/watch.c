@@ -14,7 +14,11 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LOOK_MS = 20, REST_MS = 60, SILENT_MS = 1000, MAX_PATH = 4096 };
+#include "cli_scene.h"
+#include "run.h"
+#include "shape/file.h"
+
+enum { LOOK_MS = 20, REST_MS = 60, SILENT_MS = 1000 };
 
 /* What tells one version of a file from another. */
 typedef struct file_mark {
@@ -24,14 +28,28 @@ typedef struct file_mark {
     struct timespec changed;
 } file_mark;
 
+/* One file, and what is known of it. */
+typedef struct watched_file {
+    char *path;
+    const char *name;      /* within path */
+    int folder;            /* its folder's number of inotify, or -1 */
+    file_mark shown, seen; /* as it was read; as it was last seen */
+    bool there, writing, closed;
+    double changed; /* when `seen` last changed */
+} watched_file;
+
 struct view_watch {
-    char path[MAX_PATH], folder[MAX_PATH];
-    const char *name; /* within path */
+    char path[VIEW_PATH_MAX];
+    const view_more_things *more;
     void (*wake)(void);
+    view_run *run; /* of a program that makes the clouds */
     pthread_t thread;
     pthread_mutex_t mutex;
     int pipe[2]; /* a byte in it wakes the thread */
     int notify;  /* -1: none */
+    /* The thread's own. */
+    watched_file files[VIEW_FILES_MAX]; /* the opened one first */
+    int file_count;
     /* Under the mutex. */
     view_generator generator;
     bool asked, stop, fresh, busy;
@@ -68,7 +86,7 @@ static void publish(view_watch *watch, view_news *news)
 {
     pthread_mutex_lock(&watch->mutex);
     if (watch->fresh) /* news that nobody has taken */
-        shape_set_destroy(watch->news.contents.set);
+        view_contents_free(&watch->news.contents);
     watch->news = *news;
     watch->fresh = true;
     watch->busy = false;
@@ -76,7 +94,85 @@ static void publish(view_watch *watch, view_news *news)
     watch->wake();
 }
 
-static void read_file(view_watch *watch, double since)
+/* --- which files --- */
+
+static bool is_file(const view_watch *watch)
+{
+    return watch->path[0] && strcmp(watch->path, "-");
+}
+
+/* The number of a file's folder; -1 where nothing tells of it. */
+static int watch_folder(const view_watch *watch, const char *path, const char *name)
+{
+    char folder[VIEW_PATH_MAX] = ".";
+    size_t length = (size_t)(name - path);
+    if (watch->notify < 0)
+        return -1;
+    if (length)
+        snprintf(folder, sizeof folder, "%.*s", (int)(length > 1 ? length - 1 : 1), path);
+    return inotify_add_watch(watch->notify, folder, IN_MODIFY | IN_CLOSE_WRITE | IN_MOVED_TO);
+}
+
+static void add_file(view_watch *watch, const char *path)
+{
+    for (int i = 0; i < watch->file_count; i++)
+        if (!strcmp(watch->files[i].path, path))
+            return;
+    if (watch->file_count == VIEW_FILES_MAX)
+        return;
+    watched_file *file = &watch->files[watch->file_count];
+    memset(file, 0, sizeof *file);
+    file->path = strdup(path);
+    if (!file->path)
+        return; /* it is only not watched */
+    const char *slash = strrchr(file->path, '/');
+    file->name = slash ? slash + 1 : file->path;
+    file->folder = watch_folder(watch, file->path, file->name);
+    file->there = look(file->path, &file->shown);
+    file->seen = file->shown;
+    watch->file_count++;
+}
+
+static void add_scene_file(view_watch *watch, const char *name)
+{
+    shape_error error;
+    char *path;
+    if (!name || shape_scene_find_file(watch->path, name, cli_outside_allowed(), &path, &error))
+        return; /* reading the scene says what is wrong with it */
+    add_file(watch, path);
+    free(path);
+}
+
+/* Files that are not named any more stay watched: reading once too often does no harm. */
+static void add_named(view_watch *watch, const shape_scene *scene)
+{
+    for (size_t i = 0; scene && i < scene->cloud_count; i++) {
+        add_scene_file(watch, scene->clouds[i].file);
+        add_scene_file(watch, scene->clouds[i].input);
+    }
+    for (size_t i = 0; scene && i < scene->mesh_count; i++)
+        add_scene_file(watch, scene->meshes[i].file);
+}
+
+/* Of a scene as it was opened. */
+static void add_opened_scene(view_watch *watch)
+{
+    unsigned char *bytes;
+    size_t size;
+    shape_scene *scene = NULL;
+    shape_error error;
+    if (shape_file_read(watch->path, SHAPE_SCENE_SIZE_MAX, &bytes, &size, &error))
+        return; /* a larger file is no scene */
+    if (shape_scene_is(bytes, size) && !shape_scene_decode(bytes, size, watch->path, &scene, &error))
+        add_named(watch, scene);
+    shape_scene_destroy(scene);
+    free(bytes);
+}
+
+/* --- reading --- */
+
+/* things: whether what is opaque is to be read, too. */
+static void read_file(view_watch *watch, double since, bool things)
 {
     view_news news;
     shape_error error;
@@ -85,23 +181,46 @@ static void read_file(view_watch *watch, double since)
     view_generator generator = watch->generator;
     watch->busy = true;
     pthread_mutex_unlock(&watch->mutex);
-    view_source_read(watch->path, &generator, &news.contents, news.text, sizeof news.text, &error);
+    view_source_read(watch->path, &generator, watch->run, watch->more, things && watch->more, &news.contents,
+                     news.text, sizeof news.text, &error);
+    add_named(watch, news.contents.scene);
+    pthread_mutex_lock(&watch->mutex);
+    bool outdated = watch->asked || watch->stop; /* and perhaps broken off */
+    pthread_mutex_unlock(&watch->mutex);
+    if (outdated) {
+        view_contents_free(&news.contents);
+        return;
+    }
     news.saved = since;
     news.milliseconds = now_ms() - since;
     publish(watch, &news);
 }
 
-static void tell_gone(view_watch *watch)
+static void tell_gone(view_watch *watch, const char *path)
 {
     view_news news;
     memset(&news, 0, sizeof news);
-    snprintf(news.text, sizeof news.text, "%.4000s: the file is gone (what it held is still shown)",
-             watch->path);
+    snprintf(news.text, sizeof news.text, "%.4000s: the file is gone (what it held is still shown)", path);
     publish(watch, &news);
 }
 
-/* Reads all events. *writing: somebody has changed the file and not closed it; *closed: it is whole again. */
-static void read_events(const view_watch *watch, bool *writing, bool *closed)
+/* Notes an event: somebody has changed a file and not closed it, or it is whole again. */
+static void note_event(view_watch *watch, const struct inotify_event *event, const char *name)
+{
+    for (int i = 0; i < watch->file_count; i++) {
+        watched_file *file = &watch->files[i];
+        if (file->folder != event->wd || strcmp(name, file->name))
+            continue;
+        if (event->mask & IN_MODIFY)
+            file->writing = true;
+        if (event->mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) {
+            file->writing = false;
+            file->closed = true;
+        }
+    }
+}
+
+static void read_events(view_watch *watch)
 {
     union {
         struct inotify_event event;
@@ -116,14 +235,8 @@ static void read_events(const view_watch *watch, bool *writing, bool *closed)
             memcpy(&event, at, sizeof event);
             const char *name = at + sizeof event;
             at += sizeof event + event.len;
-            if (!event.len || strcmp(name, watch->name))
-                continue;
-            if (event.mask & IN_MODIFY)
-                *writing = true;
-            if (event.mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) {
-                *writing = false;
-                *closed = true;
-            }
+            if (event.len)
+                note_event(watch, &event, name);
         }
     }
 }
@@ -138,121 +251,115 @@ static void wait_for(const view_watch *watch, int milliseconds)
         return; /* empty again: a byte is a wish to wake and nothing else */
 }
 
-/* What the watching thread knows of the file. */
-typedef struct watch_state {
-    file_mark shown, seen; /* as it was read; as it was last seen */
-    bool there, writing;
-    double changed; /* when `seen` last changed */
-} watch_state;
-
 /* Whether the file is to be read now: it has been closed, or it has changed and then rested for a while without a word.
  * Never while somebody writes it. */
-static bool is_ready(const view_watch *watch, watch_state *state, const file_mark *mark, bool closed)
+static bool is_ready(watched_file *file, const file_mark *mark)
 {
     double time = now_ms();
-    if (!same(mark, &state->seen)) {
-        state->seen = *mark;
-        state->changed = time;
+    if (!same(mark, &file->seen)) {
+        file->seen = *mark;
+        file->changed = time;
     }
-    if (state->writing)
+    if (file->writing)
         return false;
-    return closed ||
-           (!same(mark, &state->shown) && time - state->changed > (watch->notify < 0 ? REST_MS : SILENT_MS));
+    return file->closed ||
+           (!same(mark, &file->shown) && time - file->changed > (file->folder < 0 ? REST_MS : SILENT_MS));
 }
 
-/* One look at the file. */
-static void attend(view_watch *watch, watch_state *state, bool asked)
+/* One look at a file; whether it is to be read. */
+static bool attend_file(view_watch *watch, watched_file *file, bool asked)
 {
-    bool closed = false;
     file_mark mark;
+    bool there = look(file->path, &mark);
+    if (!there && (file->there || asked))
+        tell_gone(watch, file->path);
+    if (there && !file->there)
+        memset(&file->shown, 0, sizeof file->shown); /* it is back, with whatever it holds */
+    file->there = there;
+    bool ready = there && (is_ready(file, &mark) || asked);
+    file->closed = false;
+    if (ready)
+        file->shown = mark;
+    return ready;
+}
+
+/* One look at all files. */
+static void attend(view_watch *watch, bool asked)
+{
+    bool ready = false, things = false;
     if (watch->notify >= 0)
-        read_events(watch, &state->writing, &closed);
-    bool there = look(watch->path, &mark);
-    if (!there && (state->there || asked))
-        tell_gone(watch);
-    if (there && !state->there)
-        memset(&state->shown, 0, sizeof state->shown); /* it is back, with whatever it holds */
-    state->there = there;
-    if (there && (is_ready(watch, state, &mark, closed) || asked)) {
-        state->shown = mark;
-        read_file(watch, now_ms());
-    }
+        read_events(watch);
+    for (int i = 0; i < watch->file_count; i++)
+        if (attend_file(watch, &watch->files[i], asked && i == 0 && is_file(watch))) {
+            ready = true;
+            things = things || i > 0;
+        }
+    if (ready || (asked && !is_file(watch)))
+        read_file(watch, now_ms(), things);
 }
 
 static void *watch_thread(void *context)
 {
     view_watch *watch = context;
-    watch_state state;
-    memset(&state, 0, sizeof state);
-    bool watched = strcmp(watch->path, "-") != 0;
-    state.there = watched && look(watch->path, &state.shown);
-    state.seen = state.shown;
+    if (is_file(watch))
+        add_file(watch, watch->path);
+    if (is_file(watch))
+        add_opened_scene(watch);
+    for (size_t i = 0; watch->more && watch->more->list && i < watch->more->list->mesh_count; i++)
+        add_file(watch, watch->more->list->meshes[i].file);
     for (;;) {
-        wait_for(watch, watched ? (watch->notify >= 0 ? 250 : LOOK_MS) : -1);
+        wait_for(watch, !watch->file_count ? -1 : watch->notify >= 0 ? 250 : LOOK_MS);
         pthread_mutex_lock(&watch->mutex);
         bool stop = watch->stop, asked = watch->asked;
         watch->asked = false;
         pthread_mutex_unlock(&watch->mutex);
         if (stop)
             return NULL;
-        if (watched)
-            attend(watch, &state, asked);
+        attend(watch, asked);
     }
 }
 
-static void open_notify(view_watch *watch)
+static void free_watch(view_watch *watch)
 {
-    watch->notify = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (watch->notify >= 0 &&
-        inotify_add_watch(watch->notify, watch->folder, IN_MODIFY | IN_CLOSE_WRITE | IN_MOVED_TO) < 0) {
+    for (int i = 0; i < watch->file_count; i++)
+        free(watch->files[i].path);
+    if (watch->fresh)
+        view_contents_free(&watch->news.contents);
+    if (watch->notify >= 0)
         close(watch->notify);
-        watch->notify = -1;
-    }
+    close(watch->pipe[0]);
+    close(watch->pipe[1]);
+    pthread_mutex_destroy(&watch->mutex);
+    view_run_destroy(watch->run);
+    free(watch);
 }
 
-static void split_path(view_watch *watch, const char *path)
-{
-    snprintf(watch->path, sizeof watch->path, "%s", path);
-    const char *slash = strrchr(watch->path, '/');
-    watch->name = slash ? slash + 1 : watch->path;
-    size_t length = slash ? (size_t)(slash - watch->path) : 0;
-    snprintf(watch->folder, sizeof watch->folder, "%.*s", (int)length, watch->path);
-    if (!slash)
-        snprintf(watch->folder, sizeof watch->folder, ".");
-    else if (!length)
-        snprintf(watch->folder, sizeof watch->folder, "/");
-}
-
-view_watch *view_watch_start(const char *path, const view_generator *generator, void (*wake)(void),
-                             shape_error *error)
+view_watch *view_watch_start(const char *path, const view_generator *generator, const view_more_things *more,
+                             void (*wake)(void), shape_error *error)
 {
     view_watch *watch = calloc(1, sizeof *watch);
     if (!watch) {
         shape_error_memory(error);
         return NULL;
     }
-    split_path(watch, path);
+    snprintf(watch->path, sizeof watch->path, "%s", path);
     watch->generator = *generator;
+    watch->more = more;
     watch->wake = wake;
-    watch->notify = -1;
-    if (pipe(watch->pipe)) {
+    watch->run = view_run_create();
+    if (!watch->run || pipe(watch->pipe)) {
         shape_error_set(error, SHAPE_ERROR_SYSTEM, "no pipe: %s", strerror(errno));
+        view_run_destroy(watch->run);
         free(watch);
         return NULL;
     }
-    if (strcmp(path, "-"))
-        open_notify(watch);
+    watch->notify = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     pthread_mutex_init(&watch->mutex, NULL);
     int failed = pthread_create(&watch->thread, NULL, watch_thread, watch);
     if (!failed)
         return watch;
     shape_error_set(error, SHAPE_ERROR_SYSTEM, "no thread: %s", strerror(failed));
-    if (watch->notify >= 0)
-        close(watch->notify);
-    close(watch->pipe[0]);
-    close(watch->pipe[1]);
-    pthread_mutex_destroy(&watch->mutex);
-    free(watch);
+    free_watch(watch);
     return NULL;
 }
 
@@ -269,16 +376,10 @@ void view_watch_stop(view_watch *watch)
     pthread_mutex_lock(&watch->mutex);
     watch->stop = true;
     pthread_mutex_unlock(&watch->mutex);
+    view_run_cancel(watch->run);
     wake_thread(watch);
     pthread_join(watch->thread, NULL);
-    if (watch->fresh)
-        shape_set_destroy(watch->news.contents.set);
-    if (watch->notify >= 0)
-        close(watch->notify);
-    close(watch->pipe[0]);
-    close(watch->pipe[1]);
-    pthread_mutex_destroy(&watch->mutex);
-    free(watch);
+    free_watch(watch);
 }
 
 void view_watch_ask(view_watch *watch, const view_generator *generator)
@@ -287,6 +388,7 @@ void view_watch_ask(view_watch *watch, const view_generator *generator)
     watch->generator = *generator;
     watch->asked = watch->busy = true;
     pthread_mutex_unlock(&watch->mutex);
+    view_run_cancel(watch->run); /* what is being made is of older settings */
     wake_thread(watch);
 }
 

@@ -1,4 +1,4 @@
-/* watch.c: the opened file, read again whenever it has been saved, on a thread of its own. */
+/* watch.c: the opened file and all that it names, read again whenever one has been saved, on a thread of its own. */
 #ifndef NEPHELE_VIEW_WATCH_H
 #define NEPHELE_VIEW_WATCH_H
 
@@ -8,19 +8,20 @@ typedef struct view_watch view_watch;
 
 /* What came of the last reading. */
 typedef struct view_news {
-    view_contents
-        contents;        /* contents.set is NULL where the file had mistakes; else the caller destroys it */
-    char text[4096];     /* the mistakes, one a line; empty where there are none */
-    double saved;        /* CLOCK_MONOTONIC when the file was found to be saved [ms] */
-    double milliseconds; /* that the reading took */
+    view_contents contents; /* contents.set is NULL where the file had mistakes; the caller frees it */
+    char text[4096];        /* the mistakes, one a line; empty where there are none */
+    double saved;           /* CLOCK_MONOTONIC when the file was found to be saved [ms] */
+    double milliseconds;    /* that the reading took */
 } view_news;
 
-/* Begins to watch. `wake` is called from the thread when there is news. Standard input ("-") is read once and not
- * watched. NULL and *error: threads or memory are out. */
-view_watch *view_watch_start(const char *path, const view_generator *generator, void (*wake)(void),
-                             shape_error *error);
+enum { VIEW_FILES_MAX = 256 }; /* watched at once; of a scene that names more, the first */
+
+/* Begins to watch the file, those that it names where it is a scene, and those of `more`, which outlives the watch; NULL. `wake` is called from the thread when there is news. Standard input ("-") is read once and not
+ * watched; nor is "", which stands for a generator without a file. NULL and *error: threads or memory are out. */
+view_watch *view_watch_start(const char *path, const view_generator *generator, const view_more_things *more,
+                             void (*wake)(void), shape_error *error);
 void view_watch_stop(view_watch *watch); /* NULL is allowed */
-/* Makes a grammar's cloud anew by other settings; not that of standard input. */
+/* Makes a generator's cloud anew by other settings, breaking off what is being made; not that of standard input. */
 void view_watch_ask(view_watch *watch, const view_generator *generator);
 /* Takes the newest news; false where there is none since the last time. */
 bool view_watch_take(view_watch *watch, view_news *news);

@@ -23,6 +23,7 @@ typedef struct opaque_node {
 
 typedef struct opaque_colour {
     float albedo[3];
+    bool ground;
 } opaque_colour;
 
 struct shape_opaque {
@@ -103,9 +104,35 @@ shape_status shape_opaque_add(shape_opaque *opaque, const shape_mesh *mesh, cons
         count += has_area(t);
     }
     opaque->count = count;
-    memcpy(opaque->colours[opaque->colour_count++].albedo, albedo, sizeof opaque->colours->albedo);
+    opaque_colour *colour = &opaque->colours[opaque->colour_count++];
+    memcpy(colour->albedo, albedo, sizeof colour->albedo);
+    colour->ground = false;
     opaque->node_count = 0;
     return SHAPE_OK;
+}
+
+shape_status shape_opaque_add_ground(shape_opaque *opaque, double height, const float albedo[3],
+                                     shape_error *error)
+{
+    const double far = SHAPE_OPAQUE_GROUND_SIDE / 2;
+    shape_dvec3 points[] = {
+        {-far, height, -far}, {-far, height, far}, {far, height, far}, {far, height, -far}};
+    uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+    const shape_mesh mesh = {.points = points, .indices = indices, .point_count = 4, .triangle_count = 2};
+    shape_status status = shape_opaque_add(opaque, &mesh, NULL, albedo, error);
+    if (!status)
+        opaque->colours[opaque->colour_count - 1].ground = true;
+    return status;
+}
+
+shape_opaque_triangle shape_opaque_get_triangle(const shape_opaque *opaque, size_t index)
+{
+    const opaque_triangle *t = &opaque->triangles[index];
+    const opaque_colour *colour = &opaque->colours[t->mesh];
+    shape_opaque_triangle triangle = {.albedo = colour->albedo, .ground = colour->ground};
+    for (int k = 0; k < 3; k++)
+        triangle.corner[k] = shape_dvec3_make(t->corner[k][0], t->corner[k][1], t->corner[k][2]);
+    return triangle;
 }
 
 /* --- the tree --- */

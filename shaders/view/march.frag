@@ -5,6 +5,7 @@
 #include "field/interval.glsl"
 #include "light/sky.glsl"
 #include "view/camera.glsl"
+#include "view/surface.glsl"
 
 uniform float step_scale;     // steps, in cells of the noise's first octave
 uniform float step_growth;    // steps grow with distance: metres a metre, about a pixel
@@ -144,11 +145,12 @@ void march_window()
 
 // More supports hold this point than the list has room for: by the tree, to where the last of the known ones ends. Up to
 // there the interval is joined, whatever else it holds.
-void march_crowd()
+void march_crowd(float last)
 {
     float until = reached + 1e-5 * abs(reached) + 1e-6;
     for (int i = 0; i < candidate_count; i++)
         until = max(until, candidate[i].y);
+    until = min(until, last);
 #ifdef ONE_CLOUD
     load_cloud(int(candidate[0].w), ray);
     while (reached < until && going_on()) {
@@ -169,7 +171,8 @@ void march_crowd()
 
 void main()
 {
-    const float FAR = 1e30;
+    vec4 behind = surface_at(gl_FragCoord.xy);
+    float ray_end = behind.a; // where something opaque stands, or nothing
     ray = camera_ray();
     random_start = pixel_random();
     fetches = steps = reached = 0.0;
@@ -188,11 +191,11 @@ void main()
         fetches = last.y;
         reached = last.z;
     }
-    while (reached < FAR && going_on()) {
-        float until = FAR;
-        if (window_length < FAR) {
-            reached = nearest_entry(ray, reached, FAR);
-            until = reached < FAR ? reached + window_length : FAR;
+    while (reached < ray_end && going_on()) {
+        float until = ray_end;
+        if (window_length < ray_end) {
+            reached = nearest_entry(ray, reached, ray_end);
+            until = min(reached < ray_end ? reached + window_length : ray_end, ray_end);
         }
         gather(ray, reached, until);
         work++;
@@ -201,11 +204,11 @@ void main()
         if (candidate_count == 0)
             reached = until;
         else if (window_end <= reached)
-            march_crowd();
+            march_crowd(ray_end);
         else
             march_window();
     }
-    if (reached < FAR && transmittance > transmittance_end) {
+    if (reached < ray_end && transmittance > transmittance_end) {
         radiance_out = vec4(radiance, transmittance);
         work_out = vec4(steps, fetches, reached, 0.0);
         return;
@@ -215,6 +218,7 @@ void main()
         radiance /= 1.0 - transmittance;
         transmittance = 0.0;
     }
-    radiance_out = vec4(radiance + transmittance * sky_radiance(ray), 1.0 - transmittance);
+    bool sky = behind.a > NO_SURFACE;
+    radiance_out = vec4(radiance + transmittance * (sky ? sky_radiance(ray) : behind.rgb), sky ? 1.0 - transmittance : 1.0);
     work_out = vec4(steps, fetches, -1.0, 0.0);
 }

@@ -10,6 +10,7 @@
 
 vec2 pixel; // the one that is drawn
 vec3 ray;
+float ray_end; // where something opaque stands
 
 // Several clouds' boxes overlap: extinctions add.
 void march_mixed(int first, int end, float t0, float t1)
@@ -93,7 +94,7 @@ void march_window(float t_min)
         float end = candidate[first].y;
         for (next++; next < candidate_count && candidate[next].x < end; next++)
             end = max(end, candidate[next].y);
-        float t0 = max(candidate[first].x, t_min), t1 = min(end, window_end);
+        float t0 = max(candidate[first].x, t_min), t1 = min(min(end, window_end), ray_end);
         if (next == first + 1) {
             load_baked(int(candidate[first].w), ray);
             march_loaded(t0, t1);
@@ -108,7 +109,8 @@ void main()
     ray = camera_ray_at(pixel);
     random_start = pixel_random_at(pixel);
     fetches = steps = 0.0;
-    for (float t = 0.0; t < 1e30 && transmittance > transmittance_end;) {
+    ray_end = surface_at(pixel).a;
+    for (float t = 0.0; t < ray_end && transmittance > transmittance_end;) {
         gather_boxes(t);
         if (candidate_count == 0)
             break;
@@ -117,7 +119,7 @@ void main()
             for (int i = 0; i < candidate_count; i++)
                 until = min(until, candidate[i].y);
             until = max(until, t + 1e-5 * abs(t) + 1e-6);
-            march_crowd(t, until);
+            march_crowd(t, min(until, ray_end));
             t = until;
             continue;
         }

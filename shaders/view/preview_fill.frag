@@ -9,6 +9,14 @@ vec3 radiance = vec3(0.0);
 uniform highp sampler2D coarse_picture; // radiance without the sky, transmittance
 uniform float coarse_agreement;         // how far neighbours may differ
 
+// Whether these rays end at places that have nothing to do with each other: at an edge of something opaque.
+bool surfaces_differ(ivec2 low, ivec2 high, float here)
+{
+    float a = surface_at(vec2(2 * low)).a, b = surface_at(vec2(2 * ivec2(high.x, low.y))).a;
+    float c = surface_at(vec2(2 * ivec2(low.x, high.y))).a, d = surface_at(vec2(2 * high)).a;
+    return max(max(max(a, b), max(c, d)), here) > 1.1 * min(min(min(a, b), min(c, d)), here);
+}
+
 void main()
 {
     vec2 pixel = drawn_pixel();
@@ -21,6 +29,8 @@ void main()
         vec4 c = texelFetch(coarse_picture, ivec2(low.x, high.y), 0), d = texelFetch(coarse_picture, high, 0);
         vec4 mean = 0.25 * (a + b + c + d);
         vec4 apart = max(max(a, b), max(c, d)) - min(min(a, b), min(c, d));
+        if (surface_on == 1 && surfaces_differ(low, high, surface_at(pixel).a))
+            discard;
         // Brightness counts relative to what is seen there, with about the sky behind.
         if (max(apart.w, apart.g / (mean.g + mean.w + 0.02)) > coarse_agreement)
             discard;

@@ -32,7 +32,7 @@ void main()
     float t0 = 0.0, t1 = 1e30;
     if (!box_intersect(tile_low.xyz, tile_high.xyz, cloud_origin, cloud_direction, t0, t1))
         t1 = -1.0;
-    march_loaded(t0, t1);
+    march_loaded(t0, min(t1, surface_at(pixel).a));
     close_ray();
     put_pixel(pixel);
 }

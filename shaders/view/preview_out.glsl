@@ -1,5 +1,6 @@
 // How the preview's shaders end: the picture, or the first pass of a moving view's.
 #include "view/sky_picture.glsl"
+#include "view/surface.glsl"
 uniform float pixel_stride; // pixels a texel of what is drawn into: 2 in the first pass of a moving view, else 1
 
 layout(location = 0) out vec4 radiance_out; // radiance, coverage; first pass: radiance without the sky, transmittance
@@ -11,7 +12,10 @@ void put_pixel(vec2 pixel)
 {
     if (pixel_stride > 1.0)
         radiance_out = vec4(radiance, transmittance);
-    else
-        radiance_out = vec4(radiance + transmittance * sky_behind(pixel), 1.0 - transmittance);
+    else {
+        vec4 behind = surface_at(pixel);
+        bool sky = behind.a > NO_SURFACE;
+        radiance_out = vec4(radiance + transmittance * (sky ? sky_behind(pixel) : behind.rgb), sky ? 1.0 - transmittance : 1.0);
+    }
     work_out = vec4(steps, fetches, 0.0, 0.0);
 }

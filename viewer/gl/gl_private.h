@@ -74,7 +74,8 @@ typedef struct gl_tiles {
 } gl_tiles;
 
 shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
-                           const shape_view *view, const shape_camera *camera, shape_error *error);
+                           const shape_view *view, const shape_gl_part *part, const shape_camera *camera,
+                           shape_error *error);
 void gl_tiles_free(gl_tiles *tiles);
 
 /* --- grid_light.c, grid_baked.c: what is made on the CPU and then uploaded --- */
@@ -96,7 +97,8 @@ typedef struct gl_light {
     shape_lightgrid *grids;
     gl_box *boxes;
     float *cells; /* scratch, as large as the atlas */
-    GLuint a, b, seen;
+    float *shade; /* the sun's share that clouds let through, for what is opaque; NULL where nothing is */
+    GLuint a, b, seen, shade_texture;
 } gl_light;
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
@@ -135,6 +137,28 @@ typedef struct gl_grids {
     gl_baked *baked; /* of the default method */
 } gl_grids;
 
+/* --- surface.c, surface_shade.c: opaque things --- */
+
+typedef struct gl_surface {
+    GLuint program, shadow_program, array, buffer;
+    GLuint map, map_framebuffer; /* distances towards the sun, as a depth texture */
+    gl_target picture;           /* radiance and distance along the ray, of this sample */
+    GLuint clouds;               /* records of all clouds, in sight or not */
+    int count, solid_count;      /* triangles; those that are not the ground's */
+    shape_dvec3 middle;          /* of these; what vertices are relative to */
+    float radius;
+    bool has_ground, mapped;
+    double ground;
+    float ground_colour[3];
+} gl_surface;
+
+/* The sun's share that clouds let through to each cell of all light grids, into light->shade. Needs no OpenGL. */
+shape_status gl_shade_make(const gl_order *order, gl_light *light, shape_error *error);
+/* Uploads the triangles of options.light.opaque, if there are any. */
+shape_status gl_surface_load(shape_gl_renderer *renderer, shape_error *error);
+shape_status gl_surface_resize(gl_surface *surface, int width, int height, shape_error *error);
+void gl_surface_free(gl_surface *surface);
+
 /* --- passes.c --- */
 
 /* One picture, or one sample of it. */
@@ -142,6 +166,7 @@ typedef struct gl_frame {
     const shape_view *view;
     const shape_camera *camera;
     const gl_tiles *tiles;
+    const shape_gl_part *part; /* of the view; never of width 0 */
     int sample;
     bool moving;
     float share; /* of what is drawn in the picture that is there already, 1: all; of moving pictures */
@@ -167,12 +192,14 @@ struct shape_gl_renderer {
     int fade_left;
     bool light_changed, refined;
     gl_preview preview;
+    gl_surface surface;
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
     int view_kind; /* which scenes the view program is for, see prepare_program */
     GLuint view_program, tonemap, density, empty_array;
     GLuint copy, heat, query;
+    shape_gl_part part;
     gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */
     int width, height;
     float window_length; /* of the exact view's candidates [m] */
@@ -194,6 +221,13 @@ void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GL
 shape_status gl_refine(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
 /* Waits for the thread and throws away what it made. */
 void gl_refine_stop(shape_gl_renderer *renderer);
+
+/* --- surface.c, of a renderer --- */
+
+/* Draws what is opaque, for the passes that march up to it. */
+void gl_surface_draw(shape_gl_renderer *renderer, const gl_frame *frame);
+/* Tells a marching program where rays end; the program is in use. */
+void gl_set_surface(const shape_gl_renderer *renderer, GLuint program);
 
 /* --- preview.c: the default method --- */
 
@@ -219,6 +253,6 @@ void gl_set_scene(const gl_scene *scene, GLuint program);
 void gl_set_grids(const gl_grids *grids, GLuint program);
 void gl_set_tiles(const gl_tiles *tiles, GLuint program);
 void gl_set_light(const shape_gl_renderer *renderer, GLuint program);
-void gl_set_camera(const shape_view *view, const shape_camera *camera, int sample, GLuint program);
+void gl_set_camera(const gl_frame *frame, GLuint program);
 
 #endif

@@ -19,9 +19,11 @@ void gl_light_drop(gl_light *light)
     glDeleteTextures(1, &light->a);
     glDeleteTextures(1, &light->b);
     glDeleteTextures(1, &light->seen);
+    glDeleteTextures(1, &light->shade_texture);
     free(light->grids);
     free(light->boxes);
     free(light->cells);
+    free(light->shade);
     free(light);
 }
 
@@ -54,6 +56,8 @@ shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *
         light->cells = calloc(cell_count(light->size) * 4, sizeof *light->cells);
         status = light->cells ? SHAPE_OK : shape_error_memory(error);
     }
+    if (!status && order->light_options.opaque)
+        status = gl_shade_make(order, light, error);
     if (status) {
         gl_light_drop(light);
         return status;

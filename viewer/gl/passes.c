@@ -81,6 +81,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);
     gl_preview_free(&renderer->preview);
+    gl_surface_free(&renderer->surface);
     glDeleteProgram(renderer->view_program);
     glDeleteProgram(renderer->tonemap);
     glDeleteProgram(renderer->density);
@@ -152,6 +153,8 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
         status = gl_scene_load(&renderer->scene, volume, error);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
         status = gl_volumes_load(&renderer->scene, volume, error);
+    if (!status && !is_paper(renderer))
+        status = gl_surface_load(renderer, error);
     renderer->costs.upload_ms = now_ms() - start;
     return status;
 }
@@ -162,10 +165,23 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     const shape_dvec3 *old = &renderer->light.sun, *sun = &light->sun;
     if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light)
         renderer->light_changed = true;
+    renderer->surface.mapped = false;
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
     return SHAPE_OK;
+}
+
+int shape_gl_largest(void)
+{
+    GLint largest = 2048;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    return largest > SHAPE_GL_PART_STEP ? (int)largest : SHAPE_GL_PART_STEP;
+}
+
+void shape_gl_set_part(shape_gl_renderer *renderer, shape_gl_part part)
+{
+    renderer->part = part;
 }
 
 /* The buffers that pictures are drawn into, remade where the size changes. */
@@ -173,15 +189,16 @@ static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int 
 {
     if (renderer->mean.framebuffer && renderer->width == width && renderer->height == height)
         return SHAPE_OK;
-    GLint largest = 2048;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    int largest = shape_gl_largest();
     if (width > largest || height > largest)
         return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                "a picture of %dx%d is larger than this GPU draws (%dx%d)", width, height,
-                               (int)largest, (int)largest);
+                               largest, largest);
     shape_status status = gl_target_make(&renderer->mean, width, height, true, error);
     if (!status && renderer->options.method == SHAPE_GL_DEFAULT)
         status = gl_preview_resize(&renderer->preview, width, height, error);
+    if (!status)
+        status = gl_surface_resize(&renderer->surface, width, height, error);
     for (int i = 0; i < 2 && !status && in_parts(renderer); i++)
         status = gl_target_make(&renderer->parts[i], width, height, false, error);
     renderer->width = width;
@@ -230,13 +247,14 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
 {
     GLuint program = renderer->view_program;
     glUseProgram(program);
-    glViewport(0, 0, frame->view->width, frame->view->height);
+    glViewport(0, 0, frame->part->width, frame->part->height);
     gl_set_scene(&renderer->scene, program);
     gl_set_grids(&renderer->grids, program);
     gl_set_tiles(frame->tiles, program);
     gl_set_light(renderer, program);
-    gl_set_camera(frame->view, frame->camera, frame->sample, program);
+    gl_set_camera(frame, program);
     gl_set_method(renderer, frame->view, program);
+    gl_set_surface(renderer, program);
     if (in_parts(renderer))
         return gl_draw_in_parts(renderer, frame->sample, error);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
@@ -264,16 +282,22 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
 static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, int sample, bool moving,
                          shape_error *error)
 {
-    shape_status status = prepare_targets(renderer, view->width, view->height, error);
+    const shape_gl_part whole = {0, 0, view->width, view->height};
+    const shape_gl_part *part = renderer->part.width ? &renderer->part : &whole;
+    shape_status status = prepare_targets(renderer, part->width, part->height, error);
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)
         return status;
     shape_camera camera = shape_view_camera(view);
     gl_tiles tiles;
-    gl_frame frame = {view, &camera, &tiles, sample, moving, 1};
+    gl_frame frame = {view, &camera, &tiles, part, sample, moving, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
-    status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, &camera, error);
+    status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, part, &camera, error);
+    if (!status) {
+        gl_light_place(renderer->grids.light, &renderer->scene, renderer->volume);
+        gl_surface_draw(renderer, &frame);
+    }
     if (!status && moving && renderer->fade_left > 0) {
         status = draw_by(renderer, &renderer->last_grids, &frame, error);
         frame.share = 1 - (float)renderer->fade_left / (GL_FADE_FRAMES + 1);

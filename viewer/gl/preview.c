@@ -59,7 +59,7 @@ static void draw_sky_picture(const shape_gl_renderer *r, const gl_frame *frame)
     glBindFramebuffer(GL_FRAMEBUFFER, r->preview.sky_picture.framebuffer);
     glViewport(0, 0, r->width / SKY_SPACING + 2, r->height / SKY_SPACING + 2);
     gl_set_light(r, program);
-    gl_set_camera(frame->view, frame->camera, frame->sample, program);
+    gl_set_camera(frame, program);
     gl_draw_triangle(r);
 }
 
@@ -76,8 +76,9 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     gl_set_scene(&r->scene, program);
     gl_set_grids(pass->grids, program);
     gl_set_tiles(pass->frame->tiles, program);
-    gl_set_camera(pass->frame->view, pass->frame->camera, pass->frame->sample, program);
+    gl_set_camera(pass->frame, program);
     gl_set_method(r, pass->frame->view, program);
+    gl_set_surface(r, program);
     gl_bind(program, "sky_picture", 14, GL_TEXTURE_2D, r->preview.sky_picture.textures[0]);
     gl_set_float(program, "pixel_stride", (float)stride);
     gl_set_float(program, "step_deep", pass->frame->moving ? 2.0f : 0.0f);

@@ -58,6 +58,19 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
 /* Sets the light; needed after shape_gl_load. The light pass, on the CPU, is made before the next picture. */
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error);
 
+/* A part of a picture: x and y of its lower left corner, from the whole's, in pixels; both multiples of
+ * SHAPE_GL_PART_STEP, so that parts join without a seam: they are what the whole would be. */
+enum { SHAPE_GL_PART_STEP = 32 };
+typedef struct shape_gl_part {
+    int x, y, width, height; /* width 0: the whole */
+} shape_gl_part;
+
+/* What is drawn from now on is that part of the view, for pictures larger than the GPU draws at once. Not while light and
+ * density are made in the background. */
+void shape_gl_set_part(shape_gl_renderer *renderer, shape_gl_part part);
+/* The longest side of a picture, or part, that the GPU draws, at least 32. */
+int shape_gl_largest(void);
+
 /* Draws sample number `sample` of a picture into the renderer's buffer: sample 0 begins a new picture, each further one
  * refines it (other starts of the rays, other places within the pixels). Returns without waiting for the GPU. */
 shape_status shape_gl_draw(shape_gl_renderer *renderer, const shape_view *view, int sample,

@@ -13,8 +13,8 @@ typedef struct rectangle {
 
 /* The tiles that a cloud's box covers; all of them where a corner is behind the eye. Rows count from below, as
  * gl_FragCoord does. */
-static rectangle cover(const shape_volume_cloud *c, const shape_view *view, const shape_camera *camera,
-                       int columns, int rows)
+static rectangle cover(const shape_volume_cloud *c, const shape_view *view, const shape_gl_part *part,
+                       const shape_camera *camera, int columns, int rows)
 {
     double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
     double right2 = shape_dvec3_dot(camera->right, camera->right),
@@ -26,8 +26,8 @@ static rectangle cover(const shape_volume_cloud *c, const shape_view *view, cons
         double depth = shape_dvec3_dot(p, camera->forward);
         if (!(depth > 1e-9 * shape_dvec3_length(p)))
             return (rectangle){0, 0, columns - 1, rows - 1};
-        double x = (shape_dvec3_dot(p, camera->right) / right2 / depth + 1) / 2 * view->width;
-        double y = (shape_dvec3_dot(p, camera->up) / up2 / depth + 1) / 2 * view->height;
+        double x = (shape_dvec3_dot(p, camera->right) / right2 / depth + 1) / 2 * view->width - part->x;
+        double y = (shape_dvec3_dot(p, camera->up) / up2 / depth + 1) / 2 * view->height - part->y;
         low_x = fmin(low_x, x), high_x = fmax(high_x, x);
         low_y = fmin(low_y, y), high_y = fmax(high_y, y);
     }
@@ -65,9 +65,10 @@ static shape_status order_tiles(gl_tiles *tiles, int rows, const float *lists, s
 }
 
 shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
-                           const shape_view *view, const shape_camera *camera, shape_error *error)
+                           const shape_view *view, const shape_gl_part *part, const shape_camera *camera,
+                           shape_error *error)
 {
-    int across = (view->width + TILE - 1) / TILE, down = (view->height + TILE - 1) / TILE;
+    int across = (part->width + TILE - 1) / TILE, down = (part->height + TILE - 1) / TILE;
     size_t tile_count = (size_t)across * (size_t)down, total = 0;
     rectangle *covers = malloc(((size_t)scene->shown_count + 1) * sizeof *covers);
     size_t *next = calloc(tile_count + 1, sizeof *next);
@@ -76,7 +77,7 @@ shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_v
     memset(tiles, 0, sizeof *tiles);
     tiles->columns = across;
     for (int i = 0; covers && next && i < scene->shown_count; i++) {
-        covers[i] = cover(&volume->clouds[scene->shown[i]], view, camera, across, down);
+        covers[i] = cover(&volume->clouds[scene->shown[i]], view, part, camera, across, down);
         for (int y = covers[i].y0; y <= covers[i].y1; y++)
             for (int x = covers[i].x0; x <= covers[i].x1; x++) {
                 next[y * across + x]++;

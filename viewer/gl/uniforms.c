@@ -70,13 +70,17 @@ void gl_set_light(const shape_gl_renderer *r, GLuint program)
     gl_set_vector(program, "world_up", up);
 }
 
-void gl_set_camera(const shape_view *view, const shape_camera *camera, int sample, GLuint program)
+void gl_set_camera(const gl_frame *frame, GLuint program)
 {
+    const shape_view *view = frame->view;
+    const shape_camera *camera = frame->camera;
+    int sample = frame->sample;
     gl_set_dvector(program, "camera_forward", camera->forward);
     gl_set_dvector(program, "camera_right", camera->right);
     gl_set_dvector(program, "camera_up", camera->up);
     glUniform2f(glGetUniformLocation(program, "picture_size"), (float)view->width, (float)view->height);
-    glUniform2f(glGetUniformLocation(program, "picture_origin"), 0, 0);
+    glUniform2f(glGetUniformLocation(program, "picture_origin"), (float)frame->part->x,
+                (float)frame->part->y);
     /* Roberts' R2 sequence, beginning at the pixel's centre. */
     double x = 0.5 + 0.7548776662466927 * sample, y = 0.5 + 0.5698402909980532 * sample;
     glUniform2f(glGetUniformLocation(program, "pixel_shift"), (float)(x - floor(x)), (float)(y - floor(y)));

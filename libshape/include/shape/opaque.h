@@ -21,10 +21,24 @@ void shape_opaque_destroy(shape_opaque *opaque); /* NULL is allowed */
  * point that is not finite (SHAPE_ERROR_ARGUMENT), more than 2^25 triangles (SHAPE_ERROR_LIMIT), memory. */
 shape_status shape_opaque_add(shape_opaque *opaque, const shape_mesh *mesh, const shape_frame *frame,
                               const float albedo[3], shape_error *error);
+/* Adds level ground at a height [m, world] as far as the eye reaches: a square of SHAPE_OPAQUE_GROUND_SIDE around the
+ * vertical axis. One is enough; a second replaces nothing and lies above or below. Errors as of shape_opaque_add. */
+#define SHAPE_OPAQUE_GROUND_SIDE 2e6 /* metres */
+shape_status shape_opaque_add_ground(shape_opaque *opaque, double height, const float albedo[3],
+                                     shape_error *error);
 /* Builds the tree; after the last mesh, before the first ray. Adding more afterwards needs another call. */
 shape_status shape_opaque_finish(shape_opaque *opaque, shape_error *error);
 
 size_t shape_opaque_triangle_count(const shape_opaque *opaque);
+/* One triangle, in the order of the tree: for programs that draw them. */
+typedef struct shape_opaque_triangle {
+    shape_dvec3 corner[3]; /* metres, world */
+    const float *albedo;   /* red, green, blue; lives as long as the opaque */
+    bool ground;           /* of shape_opaque_add_ground */
+} shape_opaque_triangle;
+/* Number index of shape_opaque_triangle_count. */
+shape_opaque_triangle shape_opaque_get_triangle(const shape_opaque *opaque, size_t index);
+
 /* The box around all triangles [m, world]; false where there are none. */
 bool shape_opaque_bounds(const shape_opaque *opaque, shape_dvec3 *min, shape_dvec3 *max);
 

@@ -1,0 +1,22 @@
+/* run.c: another program of this project, run for what it writes to standard output. */
+#ifndef NEPHELE_VIEW_RUN_H
+#define NEPHELE_VIEW_RUN_H
+
+#include <stddef.h>
+
+#include "shape/status.h"
+#include "source.h"
+
+/* NULL where memory is out. */
+view_run *view_run_create(void);
+void view_run_destroy(view_run *run); /* NULL is allowed */
+/* Ends what is running, if anything is; from any thread. */
+void view_run_cancel(view_run *run);
+
+/* Runs a program, which stands beside this one or in PATH, to its end. arguments[0] is its name; the array ends by NULL.
+ * *bytes, which the caller frees, gets its output; where it fails, mistakes gets what it wrote to standard error, without
+ * its name, and the status is SHAPE_ERROR_FORMAT. run may be NULL: then nobody can end it. */
+shape_status view_run_program(view_run *run, char **arguments, unsigned char **bytes, size_t *size,
+                              char *mistakes, size_t room, shape_error *error);
+
+#endif

@@ -1,0 +1,157 @@
+/* The opened files of the window, read again when they are saved, and what it writes: commands and screenshots. */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "window_private.h"
+
+static size_t count_primitives(const shape_set *set)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < set->cloud_count; i++)
+        count += shape_primitives_count(shape_set_list_const(set, i));
+    return count;
+}
+
+shape_status window_take_set(window_state *w, shape_set *set, shape_error *error)
+{
+    view_shared *shared = view_shared_make(set);
+    if (!shared)
+        return shape_error_memory(error);
+    view_shared_drop(w->set);
+    w->set = shared;
+    w->set_number++;
+    w->primitives = count_primitives(set);
+    return SHAPE_OK;
+}
+
+void window_open_other(window_state *w, const char *path)
+{
+    shape_error error;
+    view_watch_stop(w->other_watch);
+    w->other_watch = NULL;
+    w->other_error[0] = 0;
+    view_shared_drop(w->other_set);
+    w->other_set = NULL;
+    w->set_number++;
+    snprintf(w->other_path, sizeof w->other_path, "%s", path);
+    if (!path[0])
+        return;
+    view_generator generator = view_generator_of_path(path, w->job->seed);
+    w->other_watch = view_watch_start(path, &generator, NULL, w->wake, &error);
+    if (w->other_watch)
+        view_watch_ask(w->other_watch, &generator);
+    else
+        snprintf(w->other_error, sizeof w->other_error, "%s", error.text);
+    w->state.split = true;
+    w->state.other_method = w->state.method;
+}
+
+shape_status window_take_other(window_state *w, shape_set *set, shape_error *error)
+{
+    view_shared *shared = view_shared_make(set);
+    if (!shared)
+        return shape_error_memory(error);
+    view_shared_drop(w->other_set);
+    w->other_set = shared;
+    w->set_number++;
+    return SHAPE_OK;
+}
+
+static void hear_other(window_state *w)
+{
+    view_news news;
+    shape_error error;
+    if (!w->other_watch || !view_watch_take(w->other_watch, &news))
+        return;
+    memcpy(w->other_error, news.text, sizeof w->other_error);
+    if (news.contents.set && window_take_other(w, news.contents.set, &error))
+        snprintf(w->other_error, sizeof w->other_error, "%s", error.text);
+    news.contents.set = NULL;           /* taken */
+    view_contents_free(&news.contents); /* of another scene, light and things are not shown */
+}
+
+static void take_things(window_state *w, view_contents *contents)
+{
+    view_things *things = view_things_make(contents->opaque);
+    contents->opaque = NULL;
+    if (!things)
+        return;
+    view_things_drop(w->things);
+    w->things = things;
+    w->set_number++;
+}
+
+static void hear_own(window_state *w)
+{
+    view_news news;
+    shape_error error;
+    if (!w->watch || !view_watch_take(w->watch, &news))
+        return;
+    memcpy(w->error, news.text, sizeof w->error);
+    if (!news.contents.set)
+        return;
+    view_state next;
+    memcpy(&next, &w->base, sizeof next);
+    view_state_take_set(&next, news.contents.set, &news.contents.used);
+    view_state_merge(&w->state, &w->base, &next);
+    view_history_merge(w->history, &w->base, &next);
+    memcpy(w->base.clouds, next.clouds, sizeof next.clouds);
+    w->base.cloud_count = next.cloud_count;
+    w->read_ms = news.milliseconds;
+    w->saved_ms = news.saved;
+    w->reload_ask = w->asks + 1;
+    if (window_take_set(w, news.contents.set, &error))
+        snprintf(w->error, sizeof w->error, "%s", error.text);
+    news.contents.set = NULL; /* taken */
+    if (news.contents.scene)
+        window_take_scene(w, news.contents.scene);
+    if (news.contents.things_read)
+        take_things(w, &news.contents);
+    view_contents_free(&news.contents);
+}
+
+void window_hear_news(window_state *w)
+{
+    hear_own(w);
+    hear_other(w);
+}
+
+void window_make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room)
+{
+    const view_command command = {.path = w->job->path,
+                                  .morph = w->job->morph_path,
+                                  .opening = w->job->opening,
+                                  .things = w->job->things,
+                                  .alpha = alpha,
+                                  .paper_lod = w->job->options.paper_lod,
+                                  .volume = w->job->volume_file,
+                                  .scene = w->job->scene,
+                                  .size = {size[0], size[1]},
+                                  .seed = w->job->options.seed};
+    view_command_write(&w->state, &w->base, &command, text, room);
+}
+
+/* A name that is not taken yet, in the folder that the viewer was started in. */
+void window_take_screenshot(window_state *w, const view_panel_wish *wish)
+{
+    char name[SHAPE_NAME_MAX + 1], path[SHAPE_NAME_MAX + 32], command[8192];
+    cli_bare_name(w->job->path[0] ? w->job->path : w->job->title, "cloud", name);
+    for (int i = 1; i < 10000; i++) {
+        snprintf(path, sizeof path, "%s-%04d.png", name, i);
+        if (access(path, F_OK))
+            break;
+    }
+    int size[2] = {wish->shoot_size[0], wish->shoot_size[1]};
+    if (size[0] < 1 || size[1] < 1)
+        glfwGetFramebufferSize(w->window, &size[0], &size[1]);
+    window_make_command(w, size, wish->shoot_alpha, command, sizeof command);
+    view_renderer_shoot(w->renderer, path, size[0], size[1], wish->shoot_alpha, command);
+}
+
+void window_ask_generator(window_state *w)
+{
+    if (w->watch && w->state.generator.which >= 0 &&
+        !view_generator_same(&w->state.generator, &w->asked.generator))
+        view_watch_ask(w->watch, &w->state.generator);
+}
