@@ -2,13 +2,17 @@
  * tracing, and the scattered light that the paper leaves out, by discrete ordinates. */
 #include "shape/lightgrid.h"
 
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "light/ordinates.h"
+#include "light/sunsweep.h"
 #include "shape/phase.h"
+
+static const float DEEPEST = 60000; /* a half-float's range */
 
 shape_lightgrid_options shape_lightgrid_defaults(void)
 {
@@ -24,8 +28,7 @@ void shape_delta_scaling(float g, float *share, float *rest)
 
 /* A grid of nearly cubic cells (flat ones for a thin layer) around the cloud's box and a cell more on every side, so that
  * its border is clear air. */
-static shape_status lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid,
-                            shape_error *error)
+void lightgrid_lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid)
 {
     shape_box box = cloud->box;
     if (shape_box_is_empty(box))
@@ -52,9 +55,6 @@ static shape_status lay_out(const shape_volume_cloud *cloud, int resolution, sha
         max[axis] = middle + half;
     }
     grid->box = box;
-    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
-    grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
-    return grid->cells ? SHAPE_OK : shape_error_memory(error);
 }
 
 static shape_vec3 cell_point(const shape_lightgrid *grid, int x, int y, int z, float fx, float fy, float fz)
@@ -93,20 +93,19 @@ typedef struct sun_pass {
 static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y, int z,
                               shape_candidates *scratch, shape_error *error)
 {
-    const double most = 60000; /* a half-float's range */
     float *row = grid->cells + ((size_t)z * (size_t)grid->size[1] + (size_t)y) * (size_t)grid->size[0] *
                                    SHAPE_LIGHTGRID_VALUES;
     for (int x = 0; x < grid->size[0]; x++) {
         shape_vec3 p = cell_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
         shape_dvec3 world = shape_frame_point(&pass->cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
-        double depth = most;
+        double depth = (double)DEEPEST;
         shape_status status = SHAPE_OK;
         if (!shape_opaque_blocks(pass->opaque, world, pass->sun, INFINITY))
             status = shape_volume_optical_depth(pass->volume, world, pass->sun, 0, 1e30f, pass->step, scratch,
                                                 &depth, error);
         if (status)
             return status;
-        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, most);
+        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, (double)DEEPEST);
     }
     return SHAPE_OK;
 }
@@ -189,9 +188,42 @@ static void refine(const int coarse_size[3], const float *coarse, const int size
             }
 }
 
+/* The same without steps between the cells: trilinear. */
+static void smooth(const int coarse_size[3], const float *coarse, const int size[3], float *fine)
+{
+    for (int z = 0; z < size[2]; z++)
+        for (int y = 0; y < size[1]; y++)
+            for (int x = 0; x < size[0]; x++) {
+                const int at[3] = {x, y, z};
+                size_t low[3], high[3];
+                float part[3],
+                    *out = fine + (((size_t)z * (size_t)size[1] + (size_t)y) * (size_t)size[0] + (size_t)x) *
+                                      ORDINATES_CELL;
+                for (int k = 0; k < 3; k++) {
+                    int below = (at[k] - 1) / 2,
+                        last = coarse_size[k] - 1; /* the middle of 2 i, 2 i + 1 is i's */
+                    low[k] = (size_t)below;
+                    high[k] = (size_t)(at[k] > 0 && below < last ? below + 1 : below);
+                    part[k] = at[k] % 2 ? 0.25f : 0.75f;
+                }
+                memset(out, 0, ORDINATES_CELL * sizeof *out);
+                for (int corner = 0; corner < 8; corner++) {
+                    size_t from = 0;
+                    float weight = 1;
+                    for (int k = 2; k >= 0; k--) {
+                        from = from * (size_t)coarse_size[k] + (corner >> k & 1 ? high[k] : low[k]);
+                        weight *= corner >> k & 1 ? part[k] : 1 - part[k];
+                    }
+                    for (int i = 0; i < ORDINATES_CELL; i++)
+                        out[i] += weight * coarse[from * ORDINATES_CELL + (size_t)i];
+                }
+            }
+}
+
 /* Solves on a grid of half the size first, down to a few cells, and takes that as the first guess: light travels across
- * the coarse grid in few rounds. */
-static shape_status solve_levels(ordinates_problem *p, int threads, shape_error *error)
+ * the coarse grid in few rounds. Grids of more than `finest` cells along their longest side are not solved but filled from
+ * the next coarser one. */
+static shape_status solve_levels(ordinates_problem *p, int finest, int threads, shape_error *error)
 {
     enum { SMALL = 8, ROUNDS = 64, FIRST_ROUNDS = 400 };
     const float tolerance = 0.003f;
@@ -215,11 +247,13 @@ static shape_status solve_levels(ordinates_problem *p, int threads, shape_error 
         coarsen(p->size, p->beam, half.size, beam);
         half.extinction = extinction;
         half.beam = beam;
-        status = solve_levels(&half, threads, error);
+        status = solve_levels(&half, finest, threads, error);
     }
-    if (!status) {
+    if (!status && longest <= finest) {
         refine(half.size, half.moments, p->size, p->moments);
         status = ordinates_solve(p, ROUNDS, tolerance, threads, error);
+    } else if (!status) {
+        smooth(half.size, half.moments, p->size, p->moments);
     }
     free(extinction);
     free(beam);
@@ -245,8 +279,8 @@ static void store(const ordinates_problem *p, size_t cells, shape_lightgrid *gri
     }
 }
 
-static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int threads,
-                            shape_lightgrid *grid, shape_error *error)
+static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int finest,
+                            int threads, shape_lightgrid *grid, shape_error *error)
 {
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
@@ -276,7 +310,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
             p.cell[axis] = (float)column * ((&grid->box.max.x)[axis] - (&grid->box.min.x)[axis]) /
                            (float)grid->size[axis];
         }
-        status = solve_levels(&p, threads, error);
+        status = solve_levels(&p, finest, threads, error);
         if (!status)
             store(&p, cells, grid);
     }
@@ -286,9 +320,45 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     return status;
 }
 
-shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
-                                   const shape_lightgrid_options *options, shape_lightgrid *grid,
-                                   shape_error *error)
+/* The optical depths by a march from every cell, through the clouds that may stand between the grid and the sun. */
+static shape_status find_depths(const shape_volume *volume, size_t cloud, const shape_light *light,
+                                const shape_lightgrid_options *options, int threads, shape_lightgrid *grid,
+                                shape_error *error)
+{
+    shape_volume between = *volume;
+    size_t count = 0;
+    between.clouds = malloc((volume->cloud_count + 1) * sizeof *between.clouds);
+    if (!between.clouds)
+        return shape_error_memory(error);
+    for (size_t i = 0; i < volume->cloud_count; i++)
+        if (i == cloud || shadow_may_fall(&volume->clouds[i], &volume->clouds[cloud], light->sun))
+            between.clouds[count++] = volume->clouds[i];
+    between.cloud_count = count;
+    sun_pass pass = {&between, &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
+                     options->opaque};
+    shape_status status = march_to_sun(&pass, threads, grid, error);
+    free(between.clouds);
+    return status;
+}
+
+/* Cells that something opaque keeps in the dark. */
+static void darken(const shape_volume_cloud *cloud, const shape_light *light, const shape_opaque *opaque,
+                   int threads, shape_lightgrid *grid)
+{
+    int rows = grid->size[1] * grid->size[2];
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
+    for (int i = 0; i < rows; i++)
+        for (int x = 0; x < grid->size[0]; x++) {
+            shape_vec3 p = cell_point(grid, x, i % grid->size[1], i / grid->size[1], 0.5f, 0.5f, 0.5f);
+            shape_dvec3 world = shape_frame_point(&cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
+            if (shape_opaque_blocks(opaque, world, light->sun, INFINITY))
+                grid->cells[((size_t)i * (size_t)grid->size[0] + (size_t)x) * SHAPE_LIGHTGRID_VALUES] =
+                    DEEPEST;
+        }
+}
+
+static shape_status check(const shape_volume *volume, size_t cloud, const shape_lightgrid_options *options,
+                          shape_error *error)
 {
     if (cloud >= volume->cloud_count)
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "there is no cloud number %zu", cloud);
@@ -298,15 +368,36 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     if (!(options->step > 0))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
                                "the light grid's step is %g (it must be above 0)", (double)options->step);
+    if (options->sweep && !sunsweep_has(options->sweep, cloud))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "cloud number %zu was not swept", cloud);
+    return SHAPE_OK;
+}
+
+shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
+                                   const shape_lightgrid_options *options, shape_lightgrid *grid,
+                                   shape_error *error)
+{
+    shape_status status = check(volume, cloud, options, error);
+    if (status)
+        return status;
     memset(grid, 0, sizeof *grid);
     int threads = options->threads > 0 ? options->threads : omp_get_max_threads();
     const shape_volume_cloud *c = &volume->clouds[cloud];
-    shape_status status = lay_out(c, options->resolution, grid, error);
-    sun_pass pass = {volume, c, light->sun, choose_step(volume, options->step), options->opaque};
-    if (!status)
-        status = march_to_sun(&pass, threads, grid, error);
+    lightgrid_lay_out(c, options->resolution, grid);
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
+    if (!grid->cells)
+        return shape_error_memory(error);
+    if (options->sweep) {
+        sunsweep_fill(options->sweep, cloud, threads, grid);
+        if (options->opaque)
+            darken(c, light, options->opaque, threads, grid);
+    } else {
+        status = find_depths(volume, cloud, light, options, threads, grid, error);
+    }
+    int finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
     if (!status && options->scattering)
-        status = scatter(c, light, threads, grid, error);
+        status = scatter(c, light, finest, threads, grid, error);
     if (status)
         shape_lightgrid_free(grid);
     return status;
