@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "field/row.h"
 #include "light/ordinates.h"
 #include "light/sunsweep.h"
 #include "shape/phase.h"
@@ -136,22 +137,68 @@ static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightg
     return status;
 }
 
-/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
-static void fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
-                            float *extinction)
+/* Adds the densities of a row of half cells, for which the primitives are known. */
+static void add_half_row(const shape_volume_cloud *cloud, const row_forms *list, const field_row *row,
+                         float *extinction)
 {
-    int rows = grid->size[1] * grid->size[2];
-#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
-    for (int i = 0; i < rows; i++)
-        for (int x = 0; x < grid->size[0]; x++) {
-            float sum = 0;
-            for (int corner = 0; corner < 8; corner++)
-                sum += shape_cloud_density(cloud,
-                                           cell_point(grid, x, i % grid->size[1], i / grid->size[1],
-                                                      corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f,
-                                                      corner & 4 ? 0.75f : 0.25f));
-            extinction[(size_t)i * (size_t)grid->size[0] + (size_t)x] = sum / 8 * cloud->medium.extinction;
+    enum { WHOLE = ROW_MOST / 2 };
+    float u2[ROW_MOST], density[ROW_MOST];
+    int cells = row->count / 2;
+    for (int begin = 0; begin < cells; begin += WHOLE) {
+        field_row part = *row;
+        part.low[0] += part.step * (float)(2 * begin);
+        part.count = 2 * (cells - begin < WHOLE ? cells - begin : WHOLE);
+        row_u2(list, cloud->support, &part, u2);
+        for (int i = 0; i < part.count && cloud->field.model == SHAPE_MODEL_GRID; i++)
+            u2[i] = 0;
+        row_density(cloud, &part, u2, density);
+        for (int i = 0; i < part.count / 2; i++)
+            extinction[begin + i] += density[2 * i] + density[2 * i + 1];
+    }
+}
+
+/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
+static shape_status fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
+                                    float *extinction, shape_error *error)
+{
+    int rows = grid->size[1] * grid->size[2], across = grid->size[0];
+    shape_status status = SHAPE_OK;
+#pragma omp parallel num_threads(threads)
+    {
+        row_forms list = {0};
+        shape_error own = {0};
+#pragma omp for schedule(dynamic, 4)
+        for (int i = 0; i < rows; i++) {
+            float *out = extinction + (size_t)i * (size_t)across;
+            int y = i % grid->size[1], z = i / grid->size[1];
+            for (int x = 0; x < across; x++)
+                out[x] = 0;
+            if (own.status || row_collect(cloud, cell_point(grid, 0, y, z, 0, 0, 0),
+                                          cell_point(grid, across, y, z, 0, 1, 1), &list, &own))
+                continue;
+            for (int corner = 0; corner < 4 && list.count; corner++) {
+                shape_vec3 low =
+                    cell_point(grid, 0, y, z, 0, corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f);
+                field_row row = {0,
+                                 2 * across,
+                                 {low.x, low.y, low.z},
+                                 (grid->box.max.x - grid->box.min.x) / (float)(2 * across)};
+                add_half_row(cloud, &list, &row, out);
+            }
+            for (int x = 0; x < across; x++)
+                out[x] *= cloud->medium.extinction / 8;
         }
+        free(list.items);
+        if (own.status) {
+#pragma omp critical
+            {
+                status = own.status;
+                if (error)
+                    *error = own;
+            }
+        }
+    }
+    return status;
 }
 
 /* A grid of half as many cells a side: means of extinction and beam. */
@@ -229,8 +276,9 @@ static shape_status solve_levels(ordinates_problem *p, int finest, int threads, 
     const float tolerance = 0.003f;
     int longest = p->size[0] > p->size[1] ? p->size[0] : p->size[1];
     longest = longest > p->size[2] ? longest : p->size[2];
-    if (longest <= SMALL)
-        return ordinates_solve(p, FIRST_ROUNDS, 0.1f * tolerance, threads, error);
+    if (longest <= SMALL && longest <= finest)
+        return ordinates_solve(p, FIRST_ROUNDS, finest < INT_MAX ? tolerance : 0.1f * tolerance, threads,
+                               error);
     ordinates_problem half = *p;
     for (int axis = 0; axis < 3; axis++) {
         half.size[axis] = (p->size[axis] + 1) / 2;
@@ -290,8 +338,8 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
         float share, rest, albedo = cloud->medium.albedo;
         shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &share, &rest);
         float thin = 1 - albedo * share;
-        fill_extinction(cloud, grid, threads, extinction);
-        for (size_t i = 0; i < cells; i++) {
+        status = fill_extinction(cloud, grid, threads, extinction, error);
+        for (size_t i = 0; i < cells && !status; i++) {
             extinction[i] *= thin;
             beam[i] = expf(-thin * grid->cells[i * SHAPE_LIGHTGRID_VALUES]);
         }
@@ -310,7 +358,8 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
             p.cell[axis] = (float)column * ((&grid->box.max.x)[axis] - (&grid->box.min.x)[axis]) /
                            (float)grid->size[axis];
         }
-        status = solve_levels(&p, finest, threads, error);
+        if (!status)
+            status = solve_levels(&p, finest, threads, error);
         if (!status)
             store(&p, cells, grid);
     }
@@ -368,6 +417,10 @@ static shape_status check(const shape_volume *volume, size_t cloud, const shape_
     if (!(options->step > 0))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
                                "the light grid's step is %g (it must be above 0)", (double)options->step);
+    if (options->scattering_resolution < 0 || options->scattering_resolution == 1)
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                               "scattered light by %d cells (it must be 2 or more, or 0)",
+                               options->scattering_resolution);
     if (options->sweep && !sunsweep_has(options->sweep, cloud))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "cloud number %zu was not swept", cloud);
     return SHAPE_OK;
