@@ -1,5 +1,6 @@
 /* The passes: light (on the CPU), view, accumulation, tone mapping. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -120,17 +121,22 @@ static bool is_plain(const shape_volume *volume)
 /* The view program of the methods that have one for the whole picture, as fits the volume. */
 static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *error)
 {
-    static const char *const defines[] = {"", "#define FIELD_PLAIN\n", "#define ONE_CLOUD\n",
-                                          "#define FIELD_PLAIN\n#define ONE_CLOUD\n"};
-    int kind = is_plain(renderer->volume) + 2 * (renderer->volume->cloud_count == 1);
+    const shape_volume *volume = renderer->volume;
+    bool plain = is_plain(volume), one = volume->cloud_count == 1;
+    int octaves = one ? volume->clouds[0].field.octaves : 0, kind = plain + 2 * octaves;
     if (renderer->options.method == SHAPE_GL_DEFAULT ||
         (renderer->view_program && renderer->view_kind == kind))
         return SHAPE_OK;
+    char defines[100];
+    snprintf(defines, sizeof defines, "%s%s", plain ? "#define FIELD_PLAIN\n" : "",
+             one ? "#define ONE_CLOUD\n" : "");
+    if (one)
+        snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "#define OCTAVES %d\n", octaves);
     glDeleteProgram(renderer->view_program);
     renderer->view_program = 0;
     renderer->view_kind = kind;
     return gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert", view_shader(renderer),
-                             defines[kind], &renderer->view_program, error);
+                             defines, &renderer->view_program, error);
 }
 
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
