@@ -75,12 +75,21 @@ shape_status gl_volumes_load(gl_scene *scene, const shape_volume *volume, shape_
 typedef struct gl_tiles {
     GLuint lists; /* offset and count a tile, then numbers of clouds, as a float texture */
     GLuint order; /* the tiles: those without a cloud, with one, with several; column, row, first cloud */
+    GLuint
+        primitives; /* of a single cloud: offset and count a tile, then content and least distance, nearest first */
+    bool listed; /* whether there are such lists */
     int columns, empty_count, one_count, several_count;
 } gl_tiles;
 
 shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
                            const shape_view *view, const shape_camera *camera, shape_error *error);
 void gl_tiles_free(gl_tiles *tiles);
+
+/* --- tile_primitives.c --- */
+
+/* Lists of a single cloud's primitives for the tiles; none where a list would be longer than the tree's walk. */
+shape_status gl_tiles_list_primitives(gl_tiles *tiles, const shape_volume *volume, const shape_view *view,
+                                      const shape_camera *camera, shape_error *error);
 
 /* --- grid_light.c, grid_baked.c: what is made on the CPU and then uploaded --- */
 

@@ -131,7 +131,8 @@ static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *er
     snprintf(defines, sizeof defines, "%s%s", plain ? "#define FIELD_PLAIN\n" : "",
              one ? "#define ONE_CLOUD\n" : "");
     if (one)
-        snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "#define OCTAVES %d\n", octaves);
+        snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "#define OCTAVES %d\n",
+                 octaves);
     glDeleteProgram(renderer->view_program);
     renderer->view_program = 0;
     renderer->view_kind = kind;
@@ -243,6 +244,8 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     gl_set_light(renderer, program);
     gl_set_camera(frame->view, frame->camera, frame->sample, program);
     gl_set_method(renderer, frame->view, program);
+    if (frame->tiles->listed)
+        gl_set_float(program, "window_length", 1e30f); /* lists are in order: windows need no limit */
     if (in_parts(renderer))
         return gl_draw_in_parts(renderer, frame->sample, error);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
@@ -280,6 +283,8 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     gl_frame frame = {view, &camera, &tiles, sample, moving, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
     status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, &camera, error);
+    if (!status && renderer->options.method == SHAPE_GL_EXACT)
+        status = gl_tiles_list_primitives(&tiles, renderer->volume, view, &camera, error);
     if (!status && moving && renderer->fade_left > 0) {
         status = draw_by(renderer, &renderer->last_grids, &frame, error);
         frame.share = 1 - (float)renderer->fade_left / (GL_FADE_FRAMES + 1);

@@ -91,4 +91,6 @@ void gl_set_tiles(const gl_tiles *tiles, GLuint program)
     gl_bind(program, "tiles", 11, GL_TEXTURE_2D, tiles->lists);
     gl_bind(program, "tile_list", 15, GL_TEXTURE_2D, tiles->order);
     gl_set_int(program, "tile_columns", tiles->columns);
+    gl_bind(program, "tile_primitives", 16, GL_TEXTURE_2D, tiles->primitives);
+    gl_set_int(program, "tiles_listed", tiles->listed);
 }
