@@ -217,7 +217,7 @@ static void cut_spheroid(const float *restrict u2, float limit, float kappa, int
     }
 #pragma omp simd
     for (int i = 0; i < count; i++)
-        n[i] = (u2[i] <= limit) & (n[i] < gamma[i]) ? n[i] : 0;
+        n[i] = ((u2[i] <= limit) & (n[i] < gamma[i])) ? n[i] : 0;
 }
 
 /* The row's points within [first, end). */

@@ -49,6 +49,11 @@ one() {
 
 gauss="$bin/neph-gauss -q --no-hollow --no-prune"
 $gauss -o "$work/cumulus.neph"
+for n in $clouds; do
+    side=$(awk "BEGIN { print 32 * sqrt($n) }")
+    $gauss --field "$n" --area "$side,$side" -o "$work/field.neph"
+    one clouds "$n" default "$work/field.neph" --size $size --eye 0,-30,0 --target 0,0,60 --fov 60
+done
 for method in default exact; do
     for d in $distances; do
         one distance "$d" $method "$work/cumulus.neph" --size $size --eye "0,1,$d" --target 0,1,0 --fov 67
@@ -66,12 +71,10 @@ for method in default exact; do
         one primitives "$n" $method "$work/many.neph" --size $size --eye 0,1,12 --target 0,1,0 --fov 67
     done
 done
-for n in $clouds; do
-    side=$(awk "BEGIN { print 32 * sqrt($n) }")
-    $gauss --field "$n" --area "$side,$side" -o "$work/field.neph"
-    one clouds "$n" default "$work/field.neph" --size $size --eye 0,-30,0 --target 0,0,60 --fov 60
+for series in clouds,default distance,default distance,exact resolution,default resolution,exact coverage,default \
+    coverage,exact primitives,default primitives,exact; do
+    grep -q "^$series," "$csv" || { echo "run.sh: $series was not measured, so there are no charts" >&2; exit 1; }
 done
-
 gnuplot <<PLOT
 set terminal pngcairo size 1200,800 font "sans,9"
 set output "$out/growth.png"
