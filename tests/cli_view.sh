@@ -70,6 +70,11 @@ done
 values=$(tail -c $((32 * 18 * 12)) sky.pfm | od -An -v -tfF -w12 | sort -u | tr -s ' ')
 [ "$values" = " 0.25 0.5 0.75" ] || fail "the sky behind an empty cloud is: $values"
 
+# --- a flight in and out of the cloud: every value a number, and it moves on; only as a bench
+"$bin/neph-view" spiral.neph -q --bench 6 --flight --size 32x18 --light-grid 8 >flight.json || fail "--flight failed"
+grep -q '"wrong_values": 0' flight.json || fail "a flight's picture holds no number: $(cat flight.json)"
+grep -q '"largest_jump": 0.0,*$' flight.json && fail "the flight stands still"
+
 # --- bench: every key of the contract, numbers in their order
 "$bin/neph-view" spiral.neph -q --bench 3 --size 32x18 --light-grid 8 -o last.png >bench.json || fail "--bench failed"
 [ -s last.png ] || fail "--bench with -o wrote no last frame"
@@ -98,6 +103,7 @@ refused()
 }
 refused 2 jpg spiral.neph --headless --size 8x8 -o x.jpg
 refused 2 jpg spiral.neph --bench 1 --size 8x8 -o x.jpg
+refused 2 flight spiral.neph --headless --flight -o x.png
 [ ! -e x.jpg ] || fail "a refused picture is there all the same"
 refused 2 method spiral.neph --headless --method fast -o x.png
 refused 2 size spiral.neph --headless --size 0x8 -o x.png

@@ -198,6 +198,74 @@ static void what_is_made_meanwhile_is_the_same(void **state)
     shape_set_destroy(set);
 }
 
+static void draw_until_done(shape_gl_renderer *renderer, const shape_view *view)
+{
+    shape_error error;
+    int frames = 0;
+    do {
+        must(shape_gl_draw_moving(renderer, view, &error), &error);
+        shape_gl_finish();
+        assert_true(frames++ < 100000);
+    } while (shape_gl_pending(renderer));
+}
+
+/* Twenty clouds before the eye and twenty behind it: those behind are neither lit nor baked until the view turns to them,
+ * and then the others are kept. A sun that moves makes new light and bakes nothing. Waiting or in the background. */
+static void only_what_changes_is_made_again(void **state)
+{
+    (void)state;
+    shape_error error;
+    shape_set *set = new_set();
+    for (int i = 0; i < 40; i++) {
+        shape_cloud *cloud = new_cloud(set, SHAPE_MODEL_SPHEROID);
+        cloud->frame.m[0][3] = 2 * (i % 5) - 4;
+        cloud->frame.m[1][3] = 2 * (i / 5 % 4) - 3;
+        cloud->frame.m[2][3] = i < 20 ? -40 : 40;
+        add_sphere(set, (size_t)i, 0, 0, 0, 0.8);
+    }
+    shape_volume *volume = new_volume(set);
+    shape_light light = shape_light_defaults();
+    for (int background = 0; background < 2; background++) {
+        shape_gl_options options = shape_gl_defaults();
+        options.light.resolution = 12;
+        options.background = background;
+        shape_gl_renderer *renderer;
+        must(shape_gl_create(&options, &renderer, &error), &error);
+        must(shape_gl_load(renderer, volume, &error), &error);
+        must(shape_gl_light(renderer, &light, &error), &error);
+        shape_view view = view_of(64, 36, shape_dvec3_make(0, 0, 0), shape_dvec3_make(0, 0, -40), 30);
+        draw_until_done(renderer, &view);
+        shape_gl_costs first = shape_gl_get_costs(renderer);
+        /* In the background there is a first light, and a finer one; voxels may be fine enough at once. */
+        assert_int_equal(first.lit_clouds, background ? 40 : 20);
+        assert_true(first.baked_clouds == 20 || (background && first.baked_clouds == 40));
+
+        light.sun = shape_sun_direction(120, 30 + background);
+        must(shape_gl_light(renderer, &light, &error), &error);
+        draw_until_done(renderer, &view);
+        shape_gl_costs turned = shape_gl_get_costs(renderer);
+        assert_int_equal(turned.lit_clouds, 2 * first.lit_clouds);
+        assert_int_equal(turned.baked_clouds, first.baked_clouds);
+
+        view.target = shape_dvec3_make(0, 0, 40);
+        draw_until_done(renderer, &view);
+        shape_gl_costs behind = shape_gl_get_costs(renderer);
+        assert_int_equal(behind.lit_clouds, 3 * first.lit_clouds);
+        assert_int_equal(behind.baked_clouds, 2 * first.baked_clouds);
+
+        view.target = shape_dvec3_make(0, 0, -40);
+        draw_until_done(renderer, &view);
+        shape_gl_costs back = shape_gl_get_costs(renderer);
+        if (background) { /* what was made before is still there */
+            assert_int_equal(back.lit_clouds, behind.lit_clouds);
+            assert_int_equal(back.baked_clouds, behind.baked_clouds);
+        }
+        shape_gl_destroy(renderer);
+    }
+    shape_volume_destroy(volume);
+    shape_set_destroy(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -206,6 +274,7 @@ int main(void)
         cmocka_unit_test(samples_refine_one_picture),
         cmocka_unit_test(a_moving_view_is_near_the_still_one),
         cmocka_unit_test(what_is_made_meanwhile_is_the_same),
+        cmocka_unit_test(only_what_changes_is_made_again),
     };
     return cmocka_run_group_tests(tests, open_context, close_pictures);
 }

@@ -53,8 +53,6 @@ shape_scene *render_opaque_list(void)
     shape_scene *list = shape_scene_create(&error);
     if (!list)
         cli_fail("%s", error.text);
-    if (in_scene)
-        opaque_scene_add(opaque, input->scene, input->path);
     for (int i = 0; i < meshes.count; i++) {
         add_to_scene(list, i);
         cli_check(shape_scene_set_text(&list->meshes[i].file, meshes.text[i], &error), &error);

@@ -16,7 +16,7 @@
 #include "shape/image.h"
 #include "view.h"
 
-static bool headless, paper_lod;
+static bool headless, paper_lod, flight;
 static int method, maker = -1;
 static const char *const makers[] = {"neph-gauss", "neph-meta"};
 static int64_t bench_frames, largest, samples = 32, light_grid = 48;
@@ -44,6 +44,8 @@ static const cli_option view_options[] = {
      "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
      "draw N frames on an orbit of half a degree a frame, print times as JSON", &bench_given, true},
+    {"flight", 0, CLI_FLAG, &flight, 0, 0, NULL,
+     "--bench: fly straight on through the target and out behind it, rather than round it", NULL, true},
     {"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
      "paper methods: the printed distance formula for the step, not 0.1", NULL, true},
     {"alpha", 0, CLI_FLAG, &alpha, 0, 0, NULL,
@@ -160,17 +162,57 @@ static size_t count_primitives(const shape_volume *volume)
     return count;
 }
 
-static void print_bench(const view_job *job, shape_gl_costs costs, double first_ms, double *times, int count)
+/* What a flight's pictures say beside their times. */
+typedef struct bench_pictures {
+    double slowest;      /* frame but the first, which makes light and voxels [ms] */
+    long wrong;          /* values that are no number, infinite or negative */
+    double largest_jump; /* between two pictures: rms of the difference over the mean of both */
+} bench_pictures;
+
+/* Compares a picture with the one before it, which it then replaces. */
+static void look_at(bench_pictures *seen, const float *rgba, float *last, size_t pixels, bool first)
+{
+    double sum = 0, mean = 0;
+    for (size_t i = 0; i < 4 * pixels; i++) {
+        seen->wrong += !(rgba[i] >= 0 && rgba[i] < INFINITY);
+        sum += ((double)rgba[i] - (double)last[i]) * ((double)rgba[i] - (double)last[i]);
+        mean += 0.5 * ((double)rgba[i] + (double)last[i]);
+    }
+    double jump = sqrt(sum / (4 * (double)pixels)) / fmax(mean / (4 * (double)pixels), 1e-9);
+    if (!first)
+        seen->largest_jump = fmax(seen->largest_jump, jump);
+    memcpy(last, rgba, 4 * pixels * sizeof *last);
+}
+
+/* Frame i of n: half a degree further round the target; or, in a flight, straight on through the target and out on its far
+ * side, looking ahead. */
+static void move_on(shape_view *view, const shape_view *from, int64_t i, int64_t n)
+{
+    if (!flight) {
+        view_orbit(view, 0.5);
+        return;
+    }
+    shape_dvec3 way = shape_dvec3_sub(from->target, from->eye);
+    double part = 2 * (double)i / (double)(n > 1 ? n - 1 : 1);
+    view->eye = shape_dvec3_add(from->eye, shape_dvec3_scale(way, part));
+    view->target = shape_dvec3_add(view->eye, way);
+}
+
+static void print_bench(const view_job *job, shape_gl_costs costs, double first_ms, double *times, int count,
+                        const bench_pictures *seen)
 {
     qsort(times, (size_t)count, sizeof *times, compare_doubles);
     int p95 = (int)ceil(0.95 * count) - 1;
     json_t *report = json_pack(
-        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f}, s:I, s:f, s:f}", "method",
-        method_names[job->options.method], "size", job->view.width, job->view.height, "frames", count,
-        "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms", costs.bake_ms,
-        "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2], "p95",
-        times[p95], "primitives", (json_int_t)count_primitives(job->volume), "steps_per_pixel",
-        costs.steps_per_pixel, "fetches_per_pixel", costs.fetches_per_pixel);
+        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:I, s:f, s:f, s:I, s:I, s:I, s:f}",
+        "method", method_names[job->options.method], "size", job->view.width, job->view.height, "frames",
+        count, "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms",
+        costs.bake_ms, "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2],
+        "p95", times[p95], "max", count > 1 ? seen->slowest : times[0], "primitives",
+        (json_int_t)count_primitives(job->volume), "steps_per_pixel", costs.steps_per_pixel,
+        "fetches_per_pixel", costs.fetches_per_pixel, "clouds_lit", (json_int_t)costs.lit_clouds,
+        "clouds_baked", (json_int_t)costs.baked_clouds, "wrong_values", (json_int_t)seen->wrong,
+        "largest_jump", seen->largest_jump);
     if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) ||
         putchar('\n') == EOF)
         cli_fail("standard output: cannot write");
@@ -184,8 +226,9 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
     shape_view view = job->view;
     double *times = calloc((size_t)bench_frames, sizeof *times), first = 0;
     size_t pixels = (size_t)job->view.width * (size_t)job->view.height;
-    float *rgba = malloc(pixels * 4 * sizeof *rgba);
-    if (!times || !rgba)
+    float *rgba = malloc(pixels * 4 * sizeof *rgba), *last = calloc(pixels * 4, sizeof *last);
+    bench_pictures seen = {0};
+    if (!times || !rgba || !last)
         cli_fail("not enough memory");
     double steps = 0, fetches = 0;
     for (int64_t i = 0; i < bench_frames; i++) {
@@ -195,20 +238,24 @@ static void bench(view_job *job, shape_gl_renderer *renderer, double started, co
         times[i] = now_ms() - start;
         if (i == 0)
             first = now_ms() - started;
+        else
+            seen.slowest = fmax(seen.slowest, times[i]);
         cli_progress("drawing", (double)(i + 1) / (double)bench_frames);
         cli_check(shape_gl_read(renderer, rgba, &error), &error);
         steps += shape_gl_get_costs(renderer).steps_per_pixel;
         fetches += shape_gl_get_costs(renderer).fetches_per_pixel;
+        look_at(&seen, rgba, last, pixels, i == 0);
         if (i + 1 < bench_frames)
-            view_orbit(&view, 0.5);
+            move_on(&view, &job->view, i + 1, bench_frames);
     }
     free(rgba);
+    free(last);
     shape_gl_costs costs = shape_gl_get_costs(renderer);
     costs.steps_per_pixel = steps / (double)bench_frames;
     costs.fetches_per_pixel = fetches / (double)bench_frames;
     if (common->output_given)
         write_picture(job, &view, renderer, common);
-    print_bench(job, costs, first, times, (int)bench_frames);
+    print_bench(job, costs, first, times, (int)bench_frames, &seen);
     free(times);
 }
 
@@ -298,6 +345,8 @@ static void check_command(const cli_common *common, view_frames *frames)
         cli_wrong("--error chooses samples and light grid itself, for the methods default and exact");
     if (alpha && !headless && !frames_given)
         cli_wrong("--alpha needs --headless or --frames");
+    if (flight && !bench_given)
+        cli_wrong("--flight needs --bench");
     if (bench_given && frames_given)
         cli_wrong("--bench and --frames are two ways to draw (give one of them)");
     if (overwrite && !frames_given)

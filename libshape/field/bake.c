@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "field/row.h"
 
 enum {
     BLOCK = SHAPE_BAKE_BLOCK,
@@ -55,112 +55,31 @@ static shape_status lay_out(const shape_volume_cloud *cloud, float voxel, shape_
     return baked->voxels ? SHAPE_OK : shape_error_memory(error);
 }
 
-/* The quadratic form of a primitive: u^2 = |m (p - c)|^2. A sphere has the identity over its radius. */
-typedef struct form {
-    float c[3], m[3][3];
-} form;
-
-static form sphere_form(const shape_sphere *s)
-{
-    float k = 1 / s->radius;
-    form f = {{s->x, s->y, s->z}, {{k, 0, 0}, {0, k, 0}, {0, 0, k}}};
-    return f;
-}
-
-static form ellipsoid_form(const shape_ellipsoid *e)
-{
-    double r[3][3];
-    const float axes[3] = {e->a, e->b, e->c};
-    form f = {.c = {e->x, e->y, e->z}};
-    shape_quat_matrix(e->q, r);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            f.m[i][j] = (float)(r[j][i] / (double)axes[i]);
-    return f;
-}
-
-typedef struct form_list {
-    form *items;
-    size_t count, capacity;
-} form_list;
-
-static bool apart(const shape_tree_node *n, shape_vec3 low, shape_vec3 high)
-{
-    return n->min.x > high.x || n->max.x < low.x || n->min.y > high.y || n->max.y < low.y ||
-           n->min.z > high.z || n->max.z < low.z;
-}
-
-/* The primitives whose supports' boxes touch a box. */
-static shape_status collect(const shape_volume_cloud *cloud, shape_vec3 low, shape_vec3 high, form_list *list,
-                            shape_error *error)
-{
-    list->count = 0;
-    for (size_t i = 0; i < cloud->tree->count;) {
-        const shape_tree_node *node = &cloud->tree->nodes[i];
-        if (apart(node, low, high)) {
-            i = (size_t)node->skip;
-            continue;
-        }
-        i++;
-        if (node->content == 0)
-            continue;
-        if (shape_array_reserve((void **)&list->items, &list->capacity, list->count + 1, sizeof *list->items,
-                                error))
-            return SHAPE_ERROR_MEMORY;
-        list->items[list->count++] =
-            node->content > 0 ? sphere_form(&cloud->list->spheres[(size_t)node->content - 1])
-                              : ellipsoid_form(&cloud->list->ellipsoids[(size_t)-node->content - 1]);
-    }
-    return SHAPE_OK;
-}
-
-/* min u^2 of a brick's row of voxels. */
-static void row_u2(const form_list *list, const float x[BRICK], float y, float z, float u2[BRICK])
-{
-    for (int i = 0; i < BRICK; i++)
-        u2[i] = INFINITY;
-    for (size_t k = 0; k < list->count; k++) {
-        const form *f = &list->items[k];
-        float py = y - f->c[1], pz = z - f->c[2];
-        float r0 = f->m[0][1] * py + f->m[0][2] * pz, r1 = f->m[1][1] * py + f->m[1][2] * pz,
-              r2 = f->m[2][1] * py + f->m[2][2] * pz;
-        for (int i = 0; i < BRICK; i++) {
-            float px = x[i] - f->c[0];
-            float a = f->m[0][0] * px + r0, b = f->m[1][0] * px + r1, c = f->m[2][0] * px + r2;
-            float value = a * a + b * b + c * c;
-            u2[i] = value < u2[i] ? value : u2[i];
-        }
-    }
-}
-
 static shape_status fill_brick(const shape_volume_cloud *cloud, const shape_baked *baked, const int brick[3],
-                               form_list *list, shape_error *error)
+                               row_forms *list, shape_error *error)
 {
-    float corner[3], x[BRICK], u2[BRICK];
+    float corner[3], u2[BRICK], density[BRICK];
     for (int axis = 0; axis < 3; axis++)
         corner[axis] = (&baked->box.min.x)[axis] + baked->voxel * (float)(brick[axis] * BRICK);
     float edge = baked->voxel * BRICK;
     shape_vec3 low = {corner[0], corner[1], corner[2]}, high = {low.x + edge, low.y + edge, low.z + edge};
-    shape_status status = collect(cloud, low, high, list, error);
+    shape_status status = row_collect(cloud, low, high, list, error);
     if (status || !list->count)
         return status;
-    for (int i = 0; i < BRICK; i++)
-        x[i] = corner[0] + baked->voxel * ((float)i + 0.5f);
-    const float limit = cloud->support * cloud->support, unit = 255 / cloud->most;
+    const float unit = 255 / cloud->most;
     for (int k = 0; k < BRICK; k++)
         for (int j = 0; j < BRICK; j++) {
-            float y = corner[1] + baked->voxel * ((float)j + 0.5f),
-                  z = corner[2] + baked->voxel * ((float)k + 0.5f);
-            row_u2(list, x, y, z, u2);
+            field_row points = {0, BRICK, {corner[0], corner[1], corner[2]}, baked->voxel};
+            points.low[1] += baked->voxel * ((float)j + 0.5f);
+            points.low[2] += baked->voxel * ((float)k + 0.5f);
+            row_u2(list, cloud->support, &points, u2);
+            row_density(cloud, &points, u2, density);
             uint8_t *row = baked->voxels + 2 * (((size_t)(brick[2] * BRICK + k) * (size_t)baked->size[1] +
                                                  (size_t)(brick[1] * BRICK + j)) *
                                                     (size_t)baked->size[0] +
                                                 (size_t)(brick[0] * BRICK));
             for (int i = 0; i < BRICK; i++)
-                if (u2[i] <= limit)
-                    row[2 * i] =
-                        (uint8_t)(unit * shape_cloud_density_at(cloud, shape_vec3_make(x[i], y, z), u2[i]) +
-                                  0.5f);
+                row[2 * i] = (uint8_t)(unit * density[i] + 0.5f);
         }
     return SHAPE_OK;
 }
@@ -264,7 +183,7 @@ shape_status shape_bake(const shape_volume_cloud *cloud, float voxel, int thread
     int nx = baked->size[0] / BRICK, ny = baked->size[1] / BRICK, nz = baked->size[2] / BRICK;
 #pragma omp parallel num_threads(threads)
     {
-        form_list list = {0};
+        row_forms list = {0};
         shape_error own = {0};
 #pragma omp for schedule(dynamic, 1)
         for (int row = 0; row < ny * nz; row++)

@@ -2,13 +2,18 @@
  * tracing, and the scattered light that the paper leaves out, by discrete ordinates. */
 #include "shape/lightgrid.h"
 
+#include <limits.h>
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "field/row.h"
 #include "light/ordinates.h"
+#include "light/sunsweep.h"
 #include "shape/phase.h"
+
+static const float DEEPEST = 60000; /* a half-float's range */
 
 shape_lightgrid_options shape_lightgrid_defaults(void)
 {
@@ -25,8 +30,7 @@ void shape_delta_scaling(float g, float *share, float *rest)
 
 /* A grid of nearly cubic cells (flat ones for a thin layer) around the cloud's box and a cell more on every side, so that
  * its border is clear air. */
-static shape_status lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid,
-                            shape_error *error)
+void lightgrid_lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid)
 {
     shape_box box = cloud->box;
     if (shape_box_is_empty(box))
@@ -53,9 +57,6 @@ static shape_status lay_out(const shape_volume_cloud *cloud, int resolution, sha
         max[axis] = middle + half;
     }
     grid->box = box;
-    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
-    grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
-    return grid->cells ? SHAPE_OK : shape_error_memory(error);
 }
 
 static shape_vec3 cell_point(const shape_lightgrid *grid, int x, int y, int z, float fx, float fy, float fz)
@@ -94,20 +95,19 @@ typedef struct sun_pass {
 static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y, int z,
                               shape_candidates *scratch, shape_error *error)
 {
-    const double most = 60000; /* a half-float's range */
     float *row = grid->cells + ((size_t)z * (size_t)grid->size[1] + (size_t)y) * (size_t)grid->size[0] *
                                    SHAPE_LIGHTGRID_VALUES;
     for (int x = 0; x < grid->size[0]; x++) {
         shape_vec3 p = cell_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
         shape_dvec3 world = shape_frame_point(&pass->cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
-        double depth = most;
+        double depth = (double)DEEPEST;
         shape_status status = SHAPE_OK;
         if (!shape_opaque_blocks(pass->opaque, world, pass->sun, INFINITY))
             status = shape_volume_optical_depth(pass->volume, world, pass->sun, 0, 1e30f, pass->step, scratch,
                                                 &depth, error);
         if (status)
             return status;
-        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, most);
+        row[(size_t)x * SHAPE_LIGHTGRID_VALUES] = (float)fmin(depth, (double)DEEPEST);
     }
     return SHAPE_OK;
 }
@@ -138,16 +138,14 @@ static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightg
     return status;
 }
 
-/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. Of a coloured cloud the channel's
- * mean albedo too, weighed by the density. */
-static void fill_cells(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int channel, int threads,
-                       float *extinction)
+/* Of a coloured cloud the channel's mean albedo of each cell, weighed by the density. */
+static void fill_albedos(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int channel,
+                         int threads)
 {
     int rows = grid->size[1] * grid->size[2];
 #pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
     for (int i = 0; i < rows; i++)
         for (int x = 0; x < grid->size[0]; x++) {
-            size_t cell = (size_t)i * (size_t)grid->size[0] + (size_t)x;
             float sum = 0, scattered = 0;
             for (int corner = 0; corner < 8; corner++) {
                 float rgb[3];
@@ -155,16 +153,76 @@ static void fill_cells(const shape_volume_cloud *cloud, const shape_lightgrid *g
                     cell_point(grid, x, i % grid->size[1], i / grid->size[1], corner & 1 ? 0.75f : 0.25f,
                                corner & 2 ? 0.75f : 0.25f, corner & 4 ? 0.75f : 0.25f);
                 float density = shape_cloud_density(cloud, p);
-                sum += density;
-                if (!grid->albedos)
-                    continue;
                 shape_cloud_albedo(cloud, p, rgb);
+                sum += density;
                 scattered += density * rgb[channel];
             }
-            extinction[cell] = sum / 8 * cloud->medium.extinction;
-            if (grid->albedos)
-                grid->albedos[cell] = sum > 0 ? scattered / sum : 0;
+            grid->albedos[(size_t)i * (size_t)grid->size[0] + (size_t)x] = sum > 0 ? scattered / sum : 0;
         }
+}
+
+/* Adds the densities of a row of half cells, for which the primitives are known. */
+static void add_half_row(const shape_volume_cloud *cloud, const row_forms *list, const field_row *row,
+                         float *extinction)
+{
+    enum { WHOLE = ROW_MOST / 2 };
+    float u2[ROW_MOST], density[ROW_MOST];
+    int cells = row->count / 2;
+    for (int begin = 0; begin < cells; begin += WHOLE) {
+        field_row part = *row;
+        part.low[0] += part.step * (float)(2 * begin);
+        part.count = 2 * (cells - begin < WHOLE ? cells - begin : WHOLE);
+        row_u2(list, cloud->support, &part, u2);
+        for (int i = 0; i < part.count && cloud->field.model == SHAPE_MODEL_GRID; i++)
+            u2[i] = 0;
+        row_density(cloud, &part, u2, density);
+        for (int i = 0; i < part.count / 2; i++)
+            extinction[begin + i] += density[2 * i] + density[2 * i + 1];
+    }
+}
+
+/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
+static shape_status fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
+                                    float *extinction, shape_error *error)
+{
+    int rows = grid->size[1] * grid->size[2], across = grid->size[0];
+    shape_status status = SHAPE_OK;
+#pragma omp parallel num_threads(threads)
+    {
+        row_forms list = {0};
+        shape_error own = {0};
+#pragma omp for schedule(dynamic, 4)
+        for (int i = 0; i < rows; i++) {
+            float *out = extinction + (size_t)i * (size_t)across;
+            int y = i % grid->size[1], z = i / grid->size[1];
+            for (int x = 0; x < across; x++)
+                out[x] = 0;
+            if (own.status || row_collect(cloud, cell_point(grid, 0, y, z, 0, 0, 0),
+                                          cell_point(grid, across, y, z, 0, 1, 1), &list, &own))
+                continue;
+            for (int corner = 0; corner < 4 && list.count; corner++) {
+                shape_vec3 low =
+                    cell_point(grid, 0, y, z, 0, corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f);
+                field_row row = {0,
+                                 2 * across,
+                                 {low.x, low.y, low.z},
+                                 (grid->box.max.x - grid->box.min.x) / (float)(2 * across)};
+                add_half_row(cloud, &list, &row, out);
+            }
+            for (int x = 0; x < across; x++)
+                out[x] *= cloud->medium.extinction / 8;
+        }
+        free(list.items);
+        if (own.status) {
+#pragma omp critical
+            {
+                status = own.status;
+                if (error)
+                    *error = own;
+            }
+        }
+    }
+    return status;
 }
 
 /* A grid of half as many cells a side: means of extinction and beam. */
@@ -201,16 +259,50 @@ static void refine(const int coarse_size[3], const float *coarse, const int size
             }
 }
 
+/* The same without steps between the cells: trilinear. */
+static void smooth(const int coarse_size[3], const float *coarse, const int size[3], float *fine)
+{
+    for (int z = 0; z < size[2]; z++)
+        for (int y = 0; y < size[1]; y++)
+            for (int x = 0; x < size[0]; x++) {
+                const int at[3] = {x, y, z};
+                size_t low[3], high[3];
+                float part[3],
+                    *out = fine + (((size_t)z * (size_t)size[1] + (size_t)y) * (size_t)size[0] + (size_t)x) *
+                                      ORDINATES_CELL;
+                for (int k = 0; k < 3; k++) {
+                    int below = (at[k] - 1) / 2,
+                        last = coarse_size[k] - 1; /* the middle of 2 i, 2 i + 1 is i's */
+                    low[k] = (size_t)below;
+                    high[k] = (size_t)(at[k] > 0 && below < last ? below + 1 : below);
+                    part[k] = at[k] % 2 ? 0.25f : 0.75f;
+                }
+                memset(out, 0, ORDINATES_CELL * sizeof *out);
+                for (int corner = 0; corner < 8; corner++) {
+                    size_t from = 0;
+                    float weight = 1;
+                    for (int k = 2; k >= 0; k--) {
+                        from = from * (size_t)coarse_size[k] + (corner >> k & 1 ? high[k] : low[k]);
+                        weight *= corner >> k & 1 ? part[k] : 1 - part[k];
+                    }
+                    for (int i = 0; i < ORDINATES_CELL; i++)
+                        out[i] += weight * coarse[from * ORDINATES_CELL + (size_t)i];
+                }
+            }
+}
+
 /* Solves on a grid of half the size first, down to a few cells, and takes that as the first guess: light travels across
- * the coarse grid in few rounds. */
-static shape_status solve_levels(ordinates_problem *p, int threads, shape_error *error)
+ * the coarse grid in few rounds. Grids of more than `finest` cells along their longest side are not solved but filled from
+ * the next coarser one. */
+static shape_status solve_levels(ordinates_problem *p, int finest, int threads, shape_error *error)
 {
     enum { SMALL = 8, ROUNDS = 64, FIRST_ROUNDS = 400 };
     const float tolerance = 0.003f;
     int longest = p->size[0] > p->size[1] ? p->size[0] : p->size[1];
     longest = longest > p->size[2] ? longest : p->size[2];
-    if (longest <= SMALL)
-        return ordinates_solve(p, FIRST_ROUNDS, 0.1f * tolerance, threads, error);
+    if (longest <= SMALL && longest <= finest)
+        return ordinates_solve(p, FIRST_ROUNDS, finest < INT_MAX ? tolerance : 0.1f * tolerance, threads,
+                               error);
     ordinates_problem half = *p;
     for (int axis = 0; axis < 3; axis++) {
         half.size[axis] = (p->size[axis] + 1) / 2;
@@ -231,11 +323,13 @@ static shape_status solve_levels(ordinates_problem *p, int threads, shape_error 
         if (shares)
             coarsen(p->size, p->shares, half.size, shares);
         half.shares = shares;
-        status = solve_levels(&half, threads, error);
+        status = solve_levels(&half, finest, threads, error);
     }
-    if (!status) {
+    if (!status && longest <= finest) {
         refine(half.size, half.moments, p->size, p->moments);
         status = ordinates_solve(p, ROUNDS, tolerance, threads, error);
+    } else if (!status) {
+        smooth(half.size, half.moments, p->size, p->moments);
     }
     free(extinction);
     free(beam);
@@ -274,7 +368,7 @@ static float scale_cell(const shape_lightgrid *grid, size_t cell, float albedo, 
 }
 
 static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int channel,
-                            int threads, shape_lightgrid *grid, shape_error *error)
+                            int finest, int threads, shape_lightgrid *grid, shape_error *error)
 {
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
@@ -288,8 +382,10 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     if (!status) {
         float peak, rest, albedo = 0;
         shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &peak, &rest);
-        fill_cells(cloud, grid, channel, threads, extinction);
-        for (size_t i = 0; i < cells; i++) {
+        status = fill_extinction(cloud, grid, threads, extinction, error);
+        if (!status && shares)
+            fill_albedos(cloud, grid, channel, threads);
+        for (size_t i = 0; i < cells && !status; i++) {
             albedo =
                 scale_cell(grid, i, shares ? grid->albedos[i] : cloud->medium.albedo, peak, extinction, beam);
             if (shares)
@@ -311,7 +407,8 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
             p.cell[axis] = (float)column * ((&grid->box.max.x)[axis] - (&grid->box.min.x)[axis]) /
                            (float)grid->size[axis];
         }
-        status = solve_levels(&p, threads, error);
+        if (!status)
+            status = solve_levels(&p, finest, threads, error);
         if (!status)
             store(&p, cells, grid);
     }
@@ -322,9 +419,45 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     return status;
 }
 
-shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
-                                   const shape_lightgrid_options *options, shape_lightgrid *grid,
-                                   shape_error *error)
+/* The optical depths by a march from every cell, through the clouds that may stand between the grid and the sun. */
+static shape_status find_depths(const shape_volume *volume, size_t cloud, const shape_light *light,
+                                const shape_lightgrid_options *options, int threads, shape_lightgrid *grid,
+                                shape_error *error)
+{
+    shape_volume between = *volume;
+    size_t count = 0;
+    between.clouds = malloc((volume->cloud_count + 1) * sizeof *between.clouds);
+    if (!between.clouds)
+        return shape_error_memory(error);
+    for (size_t i = 0; i < volume->cloud_count; i++)
+        if (i == cloud || shadow_may_fall(&volume->clouds[i], &volume->clouds[cloud], light->sun))
+            between.clouds[count++] = volume->clouds[i];
+    between.cloud_count = count;
+    sun_pass pass = {&between, &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
+                     options->opaque};
+    shape_status status = march_to_sun(&pass, threads, grid, error);
+    free(between.clouds);
+    return status;
+}
+
+/* Cells that something opaque keeps in the dark. */
+static void darken(const shape_volume_cloud *cloud, const shape_light *light, const shape_opaque *opaque,
+                   int threads, shape_lightgrid *grid)
+{
+    int rows = grid->size[1] * grid->size[2];
+#pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
+    for (int i = 0; i < rows; i++)
+        for (int x = 0; x < grid->size[0]; x++) {
+            shape_vec3 p = cell_point(grid, x, i % grid->size[1], i / grid->size[1], 0.5f, 0.5f, 0.5f);
+            shape_dvec3 world = shape_frame_point(&cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
+            if (shape_opaque_blocks(opaque, world, light->sun, INFINITY))
+                grid->cells[((size_t)i * (size_t)grid->size[0] + (size_t)x) * SHAPE_LIGHTGRID_VALUES] =
+                    DEEPEST;
+        }
+}
+
+static shape_status check(const shape_volume *volume, size_t cloud, const shape_lightgrid_options *options,
+                          shape_error *error)
 {
     if (cloud >= volume->cloud_count)
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "there is no cloud number %zu", cloud);
@@ -337,15 +470,40 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     if (!(options->step > 0))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
                                "the light grid's step is %g (it must be above 0)", (double)options->step);
+    if (options->scattering_resolution < 0 || options->scattering_resolution == 1)
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                               "scattered light by %d cells (it must be 2 or more, or 0)",
+                               options->scattering_resolution);
+    if (options->sweep && !sunsweep_has(options->sweep, cloud))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "cloud number %zu was not swept", cloud);
+    return SHAPE_OK;
+}
+
+shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
+                                   const shape_lightgrid_options *options, shape_lightgrid *grid,
+                                   shape_error *error)
+{
+    shape_status status = check(volume, cloud, options, error);
+    if (status)
+        return status;
     memset(grid, 0, sizeof *grid);
     int threads = options->threads > 0 ? options->threads : omp_get_max_threads();
     const shape_volume_cloud *c = &volume->clouds[cloud];
-    shape_status status = lay_out(c, options->resolution, grid, error);
-    sun_pass pass = {volume, c, light->sun, choose_step(volume, options->step), options->opaque};
-    if (!status)
-        status = march_to_sun(&pass, threads, grid, error);
+    lightgrid_lay_out(c, options->resolution, grid);
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
+    if (!grid->cells)
+        return shape_error_memory(error);
+    if (options->sweep) {
+        sunsweep_fill(options->sweep, cloud, threads, grid);
+        if (options->opaque)
+            darken(c, light, options->opaque, threads, grid);
+    } else {
+        status = find_depths(volume, cloud, light, options, threads, grid, error);
+    }
+    int finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
     if (!status && options->scattering)
-        status = scatter(c, light, options->channel, threads, grid, error);
+        status = scatter(c, light, options->channel, finest, threads, grid, error);
     if (status)
         shape_lightgrid_free(grid);
     return status;

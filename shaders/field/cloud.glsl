@@ -16,12 +16,24 @@ int cloud_model, cloud_octaves, cloud_root, cloud_nodes, cloud_first_sphere, clo
 int cloud_spheres, cloud_ellipsoids;
 bool cloud_detailed;
 
+// ONE_CLOUD: the scene has no more, and its record is a uniform, which costs nothing to look at.
+#ifdef ONE_CLOUD
+uniform vec4 one_cloud[36];
+vec4 cloud_texel(int c, int i) { return one_cloud[i]; }
+#else
 vec4 cloud_texel(int c, int i) { return texelFetch(clouds, ivec2(i, c), 0); }
+#endif
 
+// Texel i of a list. LIST_BITS: lists are 2^LIST_BITS texels wide; without it they may have any width, but a division of
+// whole numbers can cost more than the look-up.
 vec4 linear_texel(highp sampler2D from, int i)
 {
+#ifdef LIST_BITS
+    return texelFetch(from, ivec2(i & ((1 << LIST_BITS) - 1), i >> LIST_BITS), 0);
+#else
     int width = textureSize(from, 0).x;
     return texelFetch(from, ivec2(i % width, i / width), 0);
+#endif
 }
 
 // origin and direction of the world ray are relative to the eye: the rows hold the eye's place in the cloud's frame.
@@ -39,8 +51,10 @@ void load_ray(int c, vec3 direction)
 
 void load_cloud(int c, vec3 direction)
 {
+#ifndef ONE_CLOUD
     if (c == cloud_index)
         return;
+#endif
     cloud_index = c;
     load_ray(c, direction);
     vec4 field = cloud_texel(c, 5), place = cloud_texel(c, 6), more = cloud_texel(c, 7);

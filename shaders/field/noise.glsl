@@ -2,6 +2,11 @@
 // 16-bit numbers, so an octave costs one fetch.
 uniform highp usampler3D noise_cells;
 
+// OCTAVES: how many the scene's one cloud has, so that compilers unroll the loop.
+#ifndef OCTAVES
+#define OCTAVES cloud_octaves
+#endif
+
 float noise_guard(float x) { return abs(x) < 1e8 ? x : 0.0; }
 
 float noise_value(vec3 q, ivec3 offset)
@@ -16,7 +21,7 @@ float noise_value(vec3 q, ivec3 offset)
 
 ivec3 noise_offset(int c, int octave)
 {
-    float code = texelFetch(clouds, ivec2(12 + octave / 4, c), 0)[octave % 4];
+    float code = cloud_texel(c, 12 + octave / 4)[octave % 4];
     int bits = int(code);
     return ivec3(bits & 63, (bits >> 6) & 63, (bits >> 12) & 63);
 }
@@ -25,7 +30,7 @@ ivec3 noise_offset(int c, int octave)
 float noise_fbm_cells(vec3 q)
 {
     float sum = 0.0, weight = 0.5;
-    for (int i = 0; i < cloud_octaves; i++) {
+    for (int i = 0; i < OCTAVES; i++) {
         q = vec3(noise_guard(q.x), noise_guard(q.y), noise_guard(q.z));
         sum += weight * noise_value(q, noise_offset(cloud_index, i));
         q *= 2.0;

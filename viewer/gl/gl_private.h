@@ -3,7 +3,9 @@
 #define SHAPE_GL_PRIVATE_H
 
 #include <epoxy/gl.h>
+#include <stdatomic.h>
 
+#include "shape/bake.h"
 #include "shape_gl.h"
 
 /* --- program.c --- */
@@ -54,6 +56,9 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
  * clouds out of the view's sight are left out. */
 void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape_camera *camera);
 void gl_scene_free(gl_scene *scene);
+/* False where all corners of a cloud's box lie outside one side of the view's pyramid, made `wider` times as wide and high,
+ * or behind the eye. */
+bool gl_in_sight(const shape_volume_cloud *cloud, const shape_camera *camera, double wider);
 /* One texel of a cloud's record. */
 void gl_scene_put(gl_scene *scene, int cloud, int texel, double x, double y, double z, double w);
 /* A float texture of `texels` RGBA texels, filled row by row. */
@@ -70,6 +75,9 @@ shape_status gl_volumes_load(gl_scene *scene, const shape_volume *volume, shape_
 typedef struct gl_tiles {
     GLuint lists; /* offset and count a tile, then numbers of clouds, as a float texture */
     GLuint order; /* the tiles: those without a cloud, with one, with several; column, row, first cloud */
+    GLuint
+        primitives; /* of a single cloud: offset and count a tile, then content and least distance, nearest first */
+    bool listed; /* whether there are such lists */
     int columns, empty_count, one_count, several_count;
 } gl_tiles;
 
@@ -78,58 +86,103 @@ shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_v
                            shape_error *error);
 void gl_tiles_free(gl_tiles *tiles);
 
+/* --- tile_primitives.c --- */
+
+/* Lists of a single cloud's primitives for the tiles; none where a list would be longer than the tree's walk. */
+shape_status gl_tiles_list_primitives(gl_tiles *tiles, const shape_volume *volume, const shape_view *view,
+                                      const shape_gl_part *part, const shape_camera *camera,
+                                      shape_error *error);
+
 /* --- grid_light.c, grid_baked.c: what is made on the CPU and then uploaded --- */
+
+/* Whether what there is of a cloud is what a view asks for; the worse the later. */
+typedef enum gl_fit { GL_FITS, GL_TOO_FINE, GL_FAR_TOO_FINE, GL_TOO_COARSE, GL_MISSING } gl_fit;
+
+typedef struct gl_light gl_light;
+typedef struct gl_baked gl_baked;
 
 /* What is to be made, and how. */
 typedef struct gl_order {
     const shape_volume *volume;
     const shape_light *light;
     bool want_light, want_baked, paper;
+    bool first;                 /* something coarse, to begin with */
+    bool missing_only;          /* whatever is there already does */
+    bool lenient;               /* what is a little too fine does */
+    const gl_light *light_from; /* clouds' grids are taken over from these where they do; NULL: none do */
+    const gl_baked *baked_from;
     shape_lightgrid_options light_options;
+    int scattering_cells; /* shape_lightgrid_options.scattering_resolution */
     shape_view view;
     size_t bake_voxels; /* at most, of all clouds together */
     int texture_limit, threads;
 } gl_order;
 
-/* Light grids of all clouds. Shared: the last user's drop frees it. */
-typedef struct gl_light {
+enum {
+    GL_KEPT_CELLS = 2000000 /* of light, of clouds out of sight */
+};
+/* How much wider than what is seen the pyramid is within which clouds are lit and baked, so that they are ready when a view
+ * turns to them. */
+#define GL_MARGIN 1.4
+
+/* Metres of the cloud's frame that a pixel covers where the cloud is nearest; 0 inside its box. */
+double gl_pixel_size(const shape_volume_cloud *cloud, const shape_view *view);
+/* Of two finenesses, in things a metre. */
+gl_fit gl_fit_sizes(double has, double wants);
+
+/* One cloud's light. */
+typedef struct gl_lit {
+    atomic_int uses;
+    shape_lightgrid grid;
+    int wanted;   /* cells along the longest side, as the view asked for; 0: a first one, to be replaced */
+    float *shade; /* a number a cell: the sun's share that clouds let through; NULL where nothing is opaque */
+} gl_lit;
+
+/* Light grids of clouds, in one atlas. Shared: the last user's drop frees it. */
+struct gl_light {
     int uses, count, size[3];
-    shape_lightgrid *grids;
+    int made;     /* clouds that were lit for it, not taken over */
+    gl_lit **lit; /* a cloud each; NULL: it has none */
     gl_box *boxes;
     float *cells; /* scratch, as large as the atlas */
     float *shade; /* the sun's share that clouds let through, for what is opaque; NULL where nothing is */
     GLuint a, b, seen, shade_texture;
-} gl_light;
+};
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
+/* Takes over what another light has of clouds that this one has none of; before it is uploaded. */
+shape_status gl_light_add(gl_light *light, const gl_light *from, int texture_limit, shape_error *error);
 void gl_light_upload(gl_light *light); /* the values as they are */
 void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *volume);
 /* Composes the light of the shown clouds for an eye and uploads it. */
 void gl_light_compose(gl_light *light, const shape_gl_renderer *renderer, shape_dvec3 eye);
-void gl_light_drop(gl_light *light); /* NULL is allowed */
+gl_fit gl_light_fit(const gl_light *light, const gl_order *order); /* of the clouds in sight, the worst */
+void gl_light_drop(gl_light *light);                               /* NULL is allowed */
 
-typedef struct gl_baked_cloud {
-    shape_vec3 low;
-    float voxel, wanted; /* what was made, what the view asked for [m, cloud's frame] */
-    bool at_limit;       /* no finer one fits into the limit of voxels */
-} gl_baked_cloud;
+/* One cloud's density. */
+typedef struct gl_dense {
+    atomic_int uses;
+    shape_baked baked;
+    float
+        wanted; /* voxel that the view asked for [m, cloud's frame]; INFINITY: a first one, to be replaced */
+    bool at_limit; /* no finer one fits into the limit of voxels */
+} gl_dense;
 
-/* Baked densities of all clouds. Shared like gl_light. */
-typedef struct gl_baked {
+/* Baked densities of clouds, in one atlas. Shared like gl_light. */
+struct gl_baked {
     int uses, count, size[3];
-    gl_baked_cloud *clouds;
+    int made; /* clouds that were baked for it, not taken over */
+    gl_dense **dense;
     gl_box *boxes;
     uint8_t *atlas; /* until it is uploaded */
     GLuint texture;
-} gl_baked;
-
-/* Whether the voxels are those that a view asks for. */
-typedef enum gl_fit { GL_FITS, GL_TOO_FINE, GL_FAR_TOO_FINE, GL_TOO_COARSE } gl_fit;
+};
 
 shape_status gl_baked_make(const gl_order *order, gl_baked **made, shape_error *error); /* needs no OpenGL */
+shape_status gl_baked_add(gl_baked *baked, const gl_baked *from, int texture_limit, shape_error *error);
 void gl_baked_upload(gl_baked *baked);
 void gl_baked_place(const gl_baked *baked, gl_scene *scene);
-gl_fit gl_baked_fit(const gl_baked *baked, const shape_volume *volume, const shape_view *view);
+gl_fit gl_baked_fit(const gl_baked *baked, const gl_order *order);
 void gl_baked_drop(gl_baked *baked); /* NULL is allowed */
 
 typedef struct gl_grids {
@@ -152,8 +205,11 @@ typedef struct gl_surface {
     float ground_colour[3];
 } gl_surface;
 
-/* The sun's share that clouds let through to each cell of all light grids, into light->shade. Needs no OpenGL. */
-shape_status gl_shade_make(const gl_order *order, gl_light *light, shape_error *error);
+/* The sun's share that clouds let through to each cell of a cloud's light grid; options: that grid's. Needs no OpenGL. */
+shape_status gl_shade_make(const gl_order *order, const shape_lightgrid_options *light_options, size_t cloud,
+                           gl_lit *lit, shape_error *error);
+/* All of them at their places in light->shade. */
+shape_status gl_shade_pack(gl_light *light, shape_error *error);
 /* Uploads the triangles of options.light.opaque, if there are any. */
 shape_status gl_surface_load(shape_gl_renderer *renderer, shape_error *error);
 shape_status gl_surface_resize(gl_surface *surface, int width, int height, shape_error *error);

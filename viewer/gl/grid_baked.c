@@ -1,5 +1,7 @@
-/* The baked densities of all clouds in one atlas, with voxels as fine as a view needs. */
+/* The baked densities of the clouds in sight in one atlas, each with voxels as fine as a view needs. A cloud's stays until
+ * a view needs another. */
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,19 +23,35 @@ static void copy_box(const gl_box *box, const void *cells, size_t bytes, const i
         }
 }
 
+static void drop_dense(gl_dense *dense)
+{
+    if (!dense || atomic_fetch_sub(&dense->uses, 1) > 1)
+        return;
+    shape_baked_free(&dense->baked);
+    free(dense);
+}
+
+static gl_dense *share(gl_dense *dense)
+{
+    if (dense)
+        atomic_fetch_add(&dense->uses, 1);
+    return dense;
+}
+
 void gl_baked_drop(gl_baked *baked)
 {
     if (!baked || --baked->uses)
         return;
     glDeleteTextures(1, &baked->texture);
-    free(baked->clouds);
+    for (int i = 0; i < baked->count; i++)
+        drop_dense(baked->dense[i]);
+    free(baked->dense);
     free(baked->boxes);
     free(baked->atlas);
     free(baked);
 }
 
-/* How fine a cloud's voxels must be [m, cloud's frame]: about a pixel where it is nearest, no finer than its noise. */
-static float wanted_voxel(const shape_volume_cloud *c, const shape_view *view)
+double gl_pixel_size(const shape_volume_cloud *c, const shape_view *view)
 {
     shape_dvec3 eye = shape_frame_point(&c->inverse, view->eye);
     double away = 0;
@@ -42,56 +60,208 @@ static float wanted_voxel(const shape_volume_cloud *c, const shape_view *view)
         double beyond = e < low ? low - e : e > high ? e - high : 0;
         away += beyond * beyond;
     }
-    double pixel = 2 * tan(view->fov * 3.14159265358979 / 360) / view->height;
+    return 2 * tan(view->fov * 3.14159265358979 / 360) / view->height * sqrt(away);
+}
+
+/* How fine a cloud's voxels must be [m, cloud's frame]: about a pixel where it is nearest, no finer than its noise. */
+static float wanted_voxel(const shape_volume_cloud *c, const shape_view *view)
+{
     double finest = 1 / (double)c->inverse_noise_scale / (1 << (c->field.octaves > 4 ? 4 : c->field.octaves));
     /* Distance and voxel are both in the cloud's frame. In steps of the square root of 2, so that a view that moves a
      * little keeps its voxels. */
-    double wanted = fmax(1.25 * pixel * sqrt(away), finest);
+    double wanted = fmax(1.25 * gl_pixel_size(c, view), finest);
     return (float)fmax(exp2(floor(2 * log2(wanted)) / 2), finest);
+}
+
+gl_fit gl_fit_sizes(double has, double wants)
+{
+    return has < 0.99 * wants   ? GL_TOO_COARSE
+           : has > 3.9 * wants  ? GL_FAR_TOO_FINE
+           : has > 1.01 * wants ? GL_TOO_FINE
+                                : GL_FITS;
+}
+
+static gl_fit fit_of(const gl_dense *dense, float wanted)
+{
+    gl_fit fit = gl_fit_sizes(1 / (double)dense->wanted, 1 / (double)wanted);
+    return fit == GL_TOO_COARSE && dense->at_limit ? GL_FITS : fit;
+}
+
+static double voxel_count(const shape_volume_cloud *c, double voxel)
+{
+    double count = 1;
+    for (int axis = 0; axis < 3; axis++)
+        count *= ((double)(&c->box.max.x)[axis] - (double)(&c->box.min.x)[axis]) / voxel + 8;
+    return count;
+}
+
+/* What the clouds near the view want [m], 0 for the others. Returns how many do. */
+static int find_wanted(const gl_order *order, float *wanted)
+{
+    shape_camera camera = shape_view_camera(&order->view);
+    int count = 0;
+    for (size_t i = 0; i < order->volume->cloud_count; i++) {
+        const shape_volume_cloud *c = &order->volume->clouds[i];
+        bool near = c->tree->count && gl_in_sight(c, &camera, GL_MARGIN);
+        wanted[i] = near ? wanted_voxel(c, &order->view) : 0;
+        count += near;
+    }
+    return count;
+}
+
+/* Voxels for each of them: what it wants where all fit into the limit, else what is left when those that want less have
+ * theirs, shared evenly. */
+static size_t share_of_each(const gl_order *order, const float *wanted, int clouds)
+{
+    double all = (double)order->bake_voxels, each = all / (clouds > 0 ? clouds : 1);
+    for (int round = 0; round < 4; round++) {
+        double taken = 0;
+        int modest = 0;
+        for (size_t i = 0; i < order->volume->cloud_count; i++) {
+            double count = wanted[i] > 0 ? voxel_count(&order->volume->clouds[i], (double)wanted[i]) : 0;
+            if (count > 0 && count <= each) {
+                taken += count;
+                modest++;
+            }
+        }
+        if (modest < clouds)
+            each = fmax(each, (all - taken) / (clouds - modest));
+    }
+    return (size_t)each;
+}
+
+/* Takes over what does; of the rest voxels[i] gets how fine it is baked, 0: not at all. Returns how many are baked. */
+static int choose(const gl_order *order, const float *wanted, size_t each, gl_baked *baked, float *voxels)
+{
+    const gl_baked *old = order->baked_from;
+    int chosen = 0;
+    size_t kept = 0;
+    for (size_t i = 0; i < order->volume->cloud_count; i++) {
+        gl_dense *last = old ? old->dense[i] : NULL;
+        float voxel = wanted[i] > 0 ? shape_bake_voxel(&order->volume->clouds[i], wanted[i], each) : 0;
+        bool good = last && wanted[i] > 0 &&
+                    (order->missing_only || (last->baked.voxel == voxel && last->wanted < INFINITY) ||
+                     (order->lenient && fit_of(last, wanted[i]) <= GL_TOO_FINE));
+        if (last && !(wanted[i] > 0) && order->lenient) {
+            const int *n = last->baked.size;
+            kept += (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+            good = kept <= order->bake_voxels / 2;
+        }
+        if (good)
+            baked->dense[i] = share(last);
+        else
+            voxels[i] = voxel;
+        chosen += voxels[i] > 0;
+    }
+    return chosen;
+}
+
+static shape_status bake(const gl_order *order, size_t cloud, float wanted, float voxel, int threads,
+                         gl_dense **made, shape_error *error)
+{
+    const shape_volume_cloud *c = &order->volume->clouds[cloud];
+    gl_dense *dense = calloc(1, sizeof *dense);
+    if (!dense)
+        return shape_error_memory(error);
+    shape_status status = shape_bake(c, voxel, threads, &dense->baked, error);
+    if (status) {
+        free(dense);
+        return status;
+    }
+    atomic_init(&dense->uses, 1);
+    bool coarser = voxel > wanted * 1.001f;
+    dense->at_limit = coarser && !order->first;
+    dense->wanted = coarser && order->first ? INFINITY : wanted;
+    *made = dense;
+    return SHAPE_OK;
+}
+
+static shape_status bake_all(const gl_order *order, gl_baked *baked, float *wanted, float *voxels,
+                             shape_error *error)
+{
+    int count = (int)order->volume->cloud_count, threads = omp_get_max_threads();
+    size_t each = share_of_each(order, wanted, find_wanted(order, wanted));
+    int chosen = choose(order, wanted, each, baked, voxels);
+    shape_status status = SHAPE_OK;
+    threads = order->threads > 0 ? order->threads : threads;
+    bool many = chosen >= 2 * threads; /* then each thread takes whole clouds */
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (many)
+    for (int i = 0; i < count; i++) {
+        shape_error own = {0};
+        if (status || !(voxels[i] > 0) ||
+            !bake(order, (size_t)i, wanted[i], voxels[i], many ? 1 : threads, &baked->dense[i], &own))
+            continue;
+#pragma omp critical
+        {
+            status = own.status;
+            if (error)
+                *error = own;
+        }
+    }
+    baked->made = chosen;
+    return status;
+}
+
+/* All grids into one atlas, to be uploaded. */
+static shape_status pack(gl_baked *baked, int texture_limit, shape_error *error)
+{
+    int *size = baked->size;
+    for (int i = 0; i < baked->count; i++)
+        memset(baked->boxes[i].size, 0, sizeof baked->boxes[i].size);
+    for (int i = 0; i < baked->count; i++)
+        if (baked->dense[i])
+            memcpy(baked->boxes[i].size, baked->dense[i]->baked.size, sizeof baked->boxes[i].size);
+    shape_status status = gl_atlas_pack(baked->boxes, baked->count, texture_limit, size, error);
+    if (status)
+        return status;
+    free(baked->atlas);
+    baked->atlas = calloc((size_t)size[0] * (size_t)size[1] * (size_t)size[2], 2);
+    if (!baked->atlas)
+        return shape_error_memory(error);
+    for (int i = 0; i < baked->count; i++)
+        if (baked->dense[i])
+            copy_box(&baked->boxes[i], baked->dense[i]->baked.voxels, 2, size, baked->atlas);
+    return SHAPE_OK;
 }
 
 shape_status gl_baked_make(const gl_order *order, gl_baked **made, shape_error *error)
 {
     size_t count = order->volume->cloud_count;
     gl_baked *baked = calloc(1, sizeof *baked);
-    shape_baked *one = calloc(count + 1, sizeof *one);
-    if (!baked || !one) {
+    float *wanted = calloc(2 * count + 1, sizeof *wanted);
+    if (!baked || !wanted) {
         free(baked);
-        free(one);
+        free(wanted);
         return shape_error_memory(error);
     }
     baked->uses = 1;
-    baked->count = (int)count;
-    baked->clouds = calloc(count + 1, sizeof *baked->clouds);
+    baked->dense = calloc(count + 1, sizeof(gl_dense *));
     baked->boxes = calloc(count + 1, sizeof *baked->boxes);
-    shape_status status = baked->clouds && baked->boxes ? SHAPE_OK : shape_error_memory(error);
-    for (size_t i = 0; i < count && !status; i++) {
-        const shape_volume_cloud *c = &order->volume->clouds[i];
-        float wanted = wanted_voxel(c, &order->view);
-        float voxel = shape_bake_voxel(c, wanted, order->bake_voxels / count);
-        status = shape_bake(c, voxel, order->threads, &one[i], error);
-        memcpy(baked->boxes[i].size, one[i].size, sizeof one[i].size);
-        baked->clouds[i] =
-            (gl_baked_cloud){one[i].box.min, one[i].voxel, wanted, one[i].voxel > wanted * 1.001f};
+    shape_status status = baked->dense && baked->boxes ? SHAPE_OK : shape_error_memory(error);
+    if (!status) {
+        baked->count = (int)count;
+        status = bake_all(order, baked, wanted, wanted + count, error);
     }
     if (!status)
-        status = gl_atlas_pack(baked->boxes, (int)count, order->texture_limit, baked->size, error);
-    if (!status) {
-        const int *size = baked->size;
-        baked->atlas = calloc((size_t)size[0] * (size_t)size[1] * (size_t)size[2], 2);
-        status = baked->atlas ? SHAPE_OK : shape_error_memory(error);
-    }
-    for (size_t i = 0; i < count && !status; i++)
-        copy_box(&baked->boxes[i], one[i].voxels, 2, baked->size, baked->atlas);
-    for (size_t i = 0; i < count; i++)
-        shape_baked_free(&one[i]);
-    free(one);
+        status = pack(baked, order->texture_limit, error);
+    free(wanted);
     if (status) {
         gl_baked_drop(baked);
         return status;
     }
     *made = baked;
     return SHAPE_OK;
+}
+
+shape_status gl_baked_add(gl_baked *baked, const gl_baked *from, int texture_limit, shape_error *error)
+{
+    bool added = false;
+    for (int i = 0; i < baked->count; i++)
+        if (!baked->dense[i] && from->dense[i]) {
+            baked->dense[i] = share(from->dense[i]);
+            added = true;
+        }
+    return added ? pack(baked, texture_limit, error) : SHAPE_OK;
 }
 
 void gl_baked_upload(gl_baked *baked)
@@ -105,22 +275,24 @@ void gl_baked_place(const gl_baked *baked, gl_scene *scene)
 {
     for (int i = 0; i < baked->count; i++) {
         const int *place = baked->boxes[i].place;
-        const gl_baked_cloud *c = &baked->clouds[i];
-        gl_scene_put(scene, i, 18, place[0], place[1], place[2], 1 / (double)c->voxel);
-        gl_scene_put(scene, i, 19, c->low.x, c->low.y, c->low.z, 0);
+        if (!baked->dense[i])
+            continue;
+        const shape_baked *b = &baked->dense[i]->baked;
+        gl_scene_put(scene, i, 18, place[0], place[1], place[2], 1 / (double)b->voxel);
+        gl_scene_put(scene, i, 19, b->box.min.x, b->box.min.y, b->box.min.z, 0);
     }
 }
 
-gl_fit gl_baked_fit(const gl_baked *baked, const shape_volume *volume, const shape_view *view)
+gl_fit gl_baked_fit(const gl_baked *baked, const gl_order *order)
 {
     gl_fit fit = GL_FITS;
+    shape_camera camera = shape_view_camera(&order->view);
     for (int i = 0; i < baked->count; i++) {
-        const gl_baked_cloud *c = &baked->clouds[i];
-        float wanted = wanted_voxel(&volume->clouds[i], view);
-        if (wanted < 0.99f * c->wanted && !c->at_limit)
-            return GL_TOO_COARSE;
-        if (wanted > 1.01f * c->wanted)
-            fit = wanted > 3.9f * c->wanted ? GL_FAR_TOO_FINE : fit == GL_FITS ? GL_TOO_FINE : fit;
+        const shape_volume_cloud *c = &order->volume->clouds[i];
+        if (!c->tree->count || !gl_in_sight(c, &camera, 1))
+            continue;
+        gl_fit own = baked->dense[i] ? fit_of(baked->dense[i], wanted_voxel(c, &order->view)) : GL_MISSING;
+        fit = own > fit ? own : fit;
     }
     return fit;
 }

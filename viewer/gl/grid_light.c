@@ -1,4 +1,7 @@
-/* The light grids of all clouds: as solved, and as one eye sees them, each in one atlas. */
+/* The light grids of the clouds in sight: as solved, and as one eye sees them, each in one atlas. Each cloud's is as fine
+ * as the view needs, and stays until it needs another. */
+#include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,29 +13,181 @@ static size_t cell_count(const int size[3])
     return (size_t)size[0] * (size_t)size[1] * (size_t)size[2];
 }
 
+static void drop_lit(gl_lit *lit)
+{
+    if (!lit || atomic_fetch_sub(&lit->uses, 1) > 1)
+        return;
+    shape_lightgrid_free(&lit->grid);
+    free(lit->shade);
+    free(lit);
+}
+
+static gl_lit *share(gl_lit *lit)
+{
+    if (lit)
+        atomic_fetch_add(&lit->uses, 1);
+    return lit;
+}
+
 void gl_light_drop(gl_light *light)
 {
     if (!light || --light->uses)
         return;
     for (int i = 0; i < light->count; i++)
-        shape_lightgrid_free(&light->grids[i]);
+        drop_lit(light->lit[i]);
     glDeleteTextures(1, &light->a);
     glDeleteTextures(1, &light->b);
     glDeleteTextures(1, &light->seen);
     glDeleteTextures(1, &light->shade_texture);
-    free(light->grids);
+    free(light->lit);
     free(light->boxes);
     free(light->cells);
     free(light->shade);
     free(light);
 }
 
-static shape_status build(const gl_order *order, size_t cloud, shape_lightgrid *grid, shape_error *error)
+/* How many cells along its longest side a cloud's light needs in a view: a cell about a pixel and a half, in steps of the
+ * square root of 2, so that a view that moves a little keeps its light. */
+static int wanted_cells(const gl_order *order, size_t cloud)
 {
+    enum { FEWEST = 12 };
+    const shape_volume_cloud *c = &order->volume->clouds[cloud];
+    int most = order->light_options.resolution;
     if (order->paper)
-        return shape_lightgrid_build_2018(order->volume, cloud, order->light, order->light_options.resolution,
-                                          0.1f, grid, error);
-    return shape_lightgrid_build(order->volume, cloud, order->light, &order->light_options, grid, error);
+        return most;
+    float longest = 0;
+    for (int axis = 0; axis < 3; axis++)
+        longest = fmaxf(longest, (&c->box.max.x)[axis] - (&c->box.min.x)[axis]);
+    double metre = gl_pixel_size(c, &order->view), cells = most;
+    while (cells > FEWEST && cells / sqrt(2) * 1.5 * metre >= (double)longest)
+        cells /= sqrt(2);
+    return (int)(cells + 0.5);
+}
+
+gl_fit gl_light_fit(const gl_light *light, const gl_order *order)
+{
+    gl_fit fit = GL_FITS;
+    shape_camera camera = shape_view_camera(&order->view);
+    for (int i = 0; i < light->count && !order->paper; i++) {
+        if (!gl_in_sight(&order->volume->clouds[i], &camera, 1))
+            continue;
+        if (!light->lit[i])
+            return GL_MISSING;
+        gl_fit own = gl_fit_sizes(light->lit[i]->wanted, wanted_cells(order, (size_t)i));
+        fit = own > fit ? own : fit;
+    }
+    return fit;
+}
+
+/* Takes over what does of the last light; of the rest cells[i] gets with how many cells it is lit, 0: not at all. */
+static void choose(const gl_order *order, gl_light *light, int *cells)
+{
+    shape_camera camera = shape_view_camera(&order->view);
+    const gl_light *old = order->light_from;
+    size_t kept = 0;
+    for (size_t i = 0; i < order->volume->cloud_count; i++) {
+        const shape_volume_cloud *c = &order->volume->clouds[i];
+        gl_lit *last = old ? old->lit[i] : NULL;
+        /* Clouds throw their shadows on things from wherever they are. */
+        bool near = order->paper || order->light_options.opaque ||
+                    (c->tree->count && gl_in_sight(c, &camera, GL_MARGIN));
+        int own = near ? wanted_cells(order, i) : 0;
+        bool good = last && near &&
+                    (order->missing_only || last->wanted == own ||
+                     (order->lenient && gl_fit_sizes(last->wanted, own) == GL_TOO_FINE));
+        if (last && !near && order->lenient) {
+            kept += cell_count(last->grid.size);
+            good = kept <= GL_KEPT_CELLS;
+        }
+        if (good)
+            light->lit[i] = share(last);
+        else
+            cells[i] = own;
+    }
+}
+
+static shape_status build(const gl_order *order, const shape_sunsweep *sweep, size_t cloud, int cells,
+                          int threads, gl_lit **made, shape_error *error)
+{
+    gl_lit *lit = calloc(1, sizeof *lit);
+    if (!lit)
+        return shape_error_memory(error);
+    shape_lightgrid_options options = order->light_options;
+    options.resolution = cells;
+    options.threads = threads;
+    options.sweep = sweep;
+    options.scattering_resolution = order->scattering_cells;
+    shape_status status =
+        order->paper
+            ? shape_lightgrid_build_2018(order->volume, cloud, order->light, cells, 0.1f, &lit->grid, error)
+            : shape_lightgrid_build(order->volume, cloud, order->light, &options, &lit->grid, error);
+    atomic_init(&lit->uses, 1);
+    if (!status && options.opaque && !order->paper)
+        status = gl_shade_make(order, &options, cloud, lit, error);
+    if (status) {
+        drop_lit(lit);
+        return status;
+    }
+    lit->wanted = order->first ? 0 : cells; /* the first one fits no view */
+    *made = lit;
+    return SHAPE_OK;
+}
+
+/* Lights the chosen clouds: each on one thread where they are many. */
+static shape_status build_all(const gl_order *order, const int *cells, gl_light *light, shape_error *error)
+{
+    enum { FINEST_SWEEP = 256 };
+    int count = (int)order->volume->cloud_count, chosen = 0, threads = omp_get_max_threads();
+    int *swept = calloc((size_t)count + 1, sizeof *swept);
+    shape_sunsweep *sweep = NULL;
+    shape_status status = swept ? SHAPE_OK : shape_error_memory(error);
+    threads = order->threads > 0 ? order->threads : threads;
+    for (int i = 0; i < count && !status; i++) {
+        chosen += cells[i] > 0;
+        /* Twice as fine as the light: as near to the truth as a march from each cell, in a tenth of its time. */
+        swept[i] = order->first || 2 * cells[i] > FINEST_SWEEP ? cells[i] : 2 * cells[i];
+    }
+    if (!status && chosen && !order->paper)
+        status = shape_sunsweep_create(order->volume, order->light, swept, order->threads, &sweep, error);
+    bool many = chosen >= 2 * threads;
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (many)
+    for (int i = 0; i < count; i++) {
+        shape_error own = {0};
+        if (status || !cells[i] ||
+            !build(order, sweep, (size_t)i, cells[i], many ? 1 : threads, &light->lit[i], &own))
+            continue;
+#pragma omp critical
+        {
+            status = own.status;
+            if (error)
+                *error = own;
+        }
+    }
+    light->made = chosen;
+    shape_sunsweep_destroy(sweep);
+    free(swept);
+    return status;
+}
+
+/* Places for all grids, and the scratch. */
+static shape_status pack(gl_light *light, int texture_limit, shape_error *error)
+{
+    for (int i = 0; i < light->count; i++)
+        memset(light->boxes[i].size, 0, sizeof light->boxes[i].size);
+    for (int i = 0; i < light->count; i++)
+        if (light->lit[i])
+            memcpy(light->boxes[i].size, light->lit[i]->grid.size, sizeof light->boxes[i].size);
+    shape_status status = gl_atlas_pack(light->boxes, light->count, texture_limit, light->size, error);
+    if (status)
+        return status;
+    free(light->cells);
+    light->cells = calloc(cell_count(light->size) * 4, sizeof *light->cells);
+    if (!light->cells)
+        return shape_error_memory(error);
+    bool shaded = false;
+    for (int i = 0; i < light->count; i++)
+        shaded = shaded || (light->lit[i] && light->lit[i]->shade);
+    return shaded ? gl_shade_pack(light, error) : SHAPE_OK;
 }
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error)
@@ -42,22 +197,18 @@ shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *
     if (!light)
         return shape_error_memory(error);
     light->uses = 1;
-    light->grids = calloc(count + 1, sizeof *light->grids);
+    light->lit = calloc(count + 1, sizeof(gl_lit *));
     light->boxes = calloc(count + 1, sizeof *light->boxes);
-    shape_status status = light->grids && light->boxes ? SHAPE_OK : shape_error_memory(error);
-    for (size_t i = 0; i < count && !status; i++) {
-        status = build(order, i, &light->grids[i], error);
-        light->count += !status;
-        memcpy(light->boxes[i].size, light->grids[i].size, sizeof light->boxes[i].size);
+    int *cells = calloc(count + 1, sizeof *cells);
+    shape_status status = light->lit && light->boxes && cells ? SHAPE_OK : shape_error_memory(error);
+    if (!status) {
+        light->count = (int)count;
+        choose(order, light, cells);
+        status = build_all(order, cells, light, error);
     }
     if (!status)
-        status = gl_atlas_pack(light->boxes, (int)count, order->texture_limit, light->size, error);
-    if (!status) {
-        light->cells = calloc(cell_count(light->size) * 4, sizeof *light->cells);
-        status = light->cells ? SHAPE_OK : shape_error_memory(error);
-    }
-    if (!status && order->light_options.opaque)
-        status = gl_shade_make(order, light, error);
+        status = pack(light, order->texture_limit, error);
+    free(cells);
     if (status) {
         gl_light_drop(light);
         return status;
@@ -66,13 +217,26 @@ shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *
     return SHAPE_OK;
 }
 
+shape_status gl_light_add(gl_light *light, const gl_light *from, int texture_limit, shape_error *error)
+{
+    bool added = false;
+    for (int i = 0; i < light->count; i++)
+        if (!light->lit[i] && from->lit[i]) {
+            light->lit[i] = share(from->lit[i]);
+            added = true;
+        }
+    return added ? pack(light, texture_limit, error) : SHAPE_OK;
+}
+
 /* Values 0..3 (part 0) or 4..7 (part 1) of all grids as one texture. */
 static GLuint value_texture(gl_light *light, int part)
 {
     memset(light->cells, 0, cell_count(light->size) * 4 * sizeof *light->cells);
     for (int i = 0; i < light->count; i++) {
         const gl_box *box = &light->boxes[i];
-        const float *from = light->grids[i].cells + 4 * part;
+        if (!light->lit[i])
+            continue;
+        const float *from = light->lit[i]->grid.cells + 4 * part;
         for (int z = 0; z < box->size[2]; z++)
             for (int y = 0; y < box->size[1]; y++) {
                 float *to =
@@ -98,8 +262,9 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
 {
     for (int i = 0; i < light->count; i++) {
         float *record = scene->records + (size_t)i * GL_RECORD_TEXELS * 4;
-        shape_record_set_light((float(*)[4])record, &volume->clouds[i], &light->grids[i],
-                               light->boxes[i].place);
+        if (light->lit[i])
+            shape_record_set_light((float(*)[4])record, &volume->clouds[i], &light->lit[i]->grid,
+                                   light->boxes[i].place);
     }
 }
 
@@ -111,8 +276,10 @@ void gl_light_compose(gl_light *light, const shape_gl_renderer *renderer, shape_
     for (int i = 0; i < renderer->scene.shown_count; i++) {
         int cloud = renderer->scene.shown[i];
         const gl_box *box = &light->boxes[cloud];
+        if (!light->lit[cloud])
+            continue;
         /* The scratch is as large as the atlas, so as any one grid. */
-        shape_lightgrid_seen(&light->grids[cloud], &renderer->volume->clouds[cloud], &renderer->light,
+        shape_lightgrid_seen(&light->lit[cloud]->grid, &renderer->volume->clouds[cloud], &renderer->light,
                              renderer->sky_upper, renderer->sky_lower, eye, light->cells);
         glTexSubImage3D(GL_TEXTURE_3D, 0, box->place[0], box->place[1], box->place[2], box->size[0],
                         box->size[1], box->size[2], GL_RGBA, GL_FLOAT, light->cells);

@@ -1,5 +1,6 @@
 /* The passes: light (on the CPU), view, accumulation, tone mapping. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -121,17 +122,23 @@ static bool is_plain(const shape_volume *volume)
 /* The view program of the methods that have one for the whole picture, as fits the volume. */
 static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *error)
 {
-    static const char *const defines[] = {"", "#define FIELD_PLAIN\n", "#define ONE_CLOUD\n",
-                                          "#define FIELD_PLAIN\n#define ONE_CLOUD\n"};
-    int kind = is_plain(renderer->volume) + 2 * (renderer->volume->cloud_count == 1);
+    const shape_volume *volume = renderer->volume;
+    bool plain = is_plain(volume), one = volume->cloud_count == 1;
+    int octaves = one ? volume->clouds[0].field.octaves : 0, kind = plain + 2 * octaves;
     if (renderer->options.method == SHAPE_GL_DEFAULT ||
         (renderer->view_program && renderer->view_kind == kind))
         return SHAPE_OK;
+    char defines[100];
+    snprintf(defines, sizeof defines, "%s%s", plain ? "#define FIELD_PLAIN\n" : "",
+             one ? "#define ONE_CLOUD\n" : "");
+    if (one)
+        snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "#define OCTAVES %d\n",
+                 octaves);
     glDeleteProgram(renderer->view_program);
     renderer->view_program = 0;
     renderer->view_kind = kind;
     return gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert", view_shader(renderer),
-                             defines[kind], &renderer->view_program, error);
+                             defines, &renderer->view_program, error);
 }
 
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
@@ -255,6 +262,8 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     gl_set_camera(frame, program);
     gl_set_method(renderer, frame->view, program);
     gl_set_surface(renderer, program);
+    if (frame->tiles->listed)
+        gl_set_float(program, "window_length", 1e30f); /* lists are in order: windows need no limit */
     if (in_parts(renderer))
         return gl_draw_in_parts(renderer, frame->sample, error);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
@@ -294,6 +303,8 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     gl_frame frame = {view, &camera, &tiles, part, sample, moving, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
     status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, part, &camera, error);
+    if (!status && renderer->options.method == SHAPE_GL_EXACT)
+        status = gl_tiles_list_primitives(&tiles, renderer->volume, view, part, &camera, error);
     if (!status) {
         gl_light_place(renderer->grids.light, &renderer->scene, renderer->volume);
         gl_surface_draw(renderer, &frame);

@@ -67,7 +67,8 @@ static shape_status compile(const char *folder, const char *name, const char *de
                             GLuint *shader, shape_error *error)
 {
     /* OpenGL ES wants precisions that desktop GLSL 3.30 accepts and ignores; only the first line differs. */
-    static const char head[] = "#version 330 core\nprecision highp float;\nprecision highp int;\n";
+    static const char head[] = "#version 330 core\nprecision highp float;\nprecision highp int;\n"
+                               "#define LIST_BITS 11\n"; /* gl_float_texture's width */
     char *source = NULL, log[400];
     size_t length = 0;
     shape_status status =

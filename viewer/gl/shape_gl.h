@@ -46,6 +46,8 @@ typedef struct shape_gl_renderer shape_gl_renderer;
 typedef struct shape_gl_costs {
     double upload_ms, light_ms, bake_ms;
     double steps_per_pixel, fetches_per_pixel; /* of the last picture read by shape_gl_read */
+    size_t lit_clouds,
+        baked_clouds; /* how often a cloud's light was made, and its density baked, since the beginning */
 } shape_gl_costs;
 
 /* Compiles the shaders. The caller destroys it. */

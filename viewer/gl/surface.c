@@ -204,10 +204,15 @@ static void set_shade(shape_gl_renderer *r, shape_dvec3 eye)
     count = rows ? count : 0;
     if (count && !light->shade_texture)
         light->shade_texture = gl_volume_texture(light->size, GL_R32F, GL_RED, GL_FLOAT, light->shade);
-    if (count)
-        memcpy(rows, r->scene.records, (size_t)count * floats * sizeof *rows);
-    for (int i = 0; i < count; i++)
-        shape_record_set_eye((float(*)[4])(rows + (size_t)i * floats), &r->volume->clouds[i], eye);
+    int shading = 0;
+    for (int i = 0; i < count; i++) {
+        if (!light->lit[i])
+            continue;
+        float *row = rows + (size_t)shading++ * floats;
+        memcpy(row, r->scene.records + (size_t)i * floats, floats * sizeof *rows);
+        shape_record_set_eye((float(*)[4])row, &r->volume->clouds[i], eye);
+    }
+    count = shading;
     glBindTexture(GL_TEXTURE_2D, s->clouds);
     if (count)
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, GL_RECORD_TEXELS, count, 0, GL_RGBA, GL_FLOAT, rows);

@@ -3,35 +3,45 @@
  * arrives; that of depths is not. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "gl_private.h"
 
-shape_status gl_shade_make(const gl_order *order, gl_light *light, shape_error *error)
+shape_status gl_shade_make(const gl_order *order, const shape_lightgrid_options *light_options, size_t cloud,
+                           gl_lit *lit, shape_error *error)
 {
-    size_t cells = (size_t)light->size[0] * (size_t)light->size[1] * (size_t)light->size[2];
-    shape_lightgrid_options options = order->light_options;
+    shape_lightgrid grid;
+    shape_lightgrid_options options = *light_options;
     options.opaque = NULL;
     options.scattering = false;
+    shape_status status = shape_lightgrid_build(order->volume, cloud, order->light, &options, &grid, error);
+    if (status)
+        return status;
+    size_t cells = (size_t)grid.size[0] * (size_t)grid.size[1] * (size_t)grid.size[2];
+    lit->shade = malloc((cells + 1) * sizeof *lit->shade);
+    for (size_t i = 0; i < cells && lit->shade; i++)
+        lit->shade[i] = expf(-grid.cells[i * SHAPE_LIGHTGRID_VALUES]);
+    shape_lightgrid_free(&grid);
+    return lit->shade ? SHAPE_OK : shape_error_memory(error);
+}
+
+shape_status gl_shade_pack(gl_light *light, shape_error *error)
+{
+    size_t cells = (size_t)light->size[0] * (size_t)light->size[1] * (size_t)light->size[2];
+    free(light->shade);
     light->shade = calloc(cells + 1, sizeof *light->shade);
     if (!light->shade)
         return shape_error_memory(error);
     for (int i = 0; i < light->count; i++) {
-        shape_lightgrid grid;
         const gl_box *box = &light->boxes[i];
-        shape_status status =
-            shape_lightgrid_build(order->volume, (size_t)i, order->light, &options, &grid, error);
-        if (status)
-            return status;
-        const float *from = grid.cells;
-        for (int z = 0; z < box->size[2]; z++)
-            for (int y = 0; y < box->size[1]; y++) {
+        const float *from = light->lit[i] ? light->lit[i]->shade : NULL;
+        for (int z = 0; z < box->size[2] && from; z++)
+            for (int y = 0; y < box->size[1]; y++, from += box->size[0]) {
                 size_t row =
                     (size_t)(box->place[2] + z) * (size_t)light->size[1] + (size_t)(box->place[1] + y);
-                float *to = light->shade + row * (size_t)light->size[0] + (size_t)box->place[0];
-                for (int x = 0; x < box->size[0]; x++, from += SHAPE_LIGHTGRID_VALUES)
-                    to[x] = expf(-from[0]);
+                memcpy(light->shade + row * (size_t)light->size[0] + (size_t)box->place[0], from,
+                       (size_t)box->size[0] * sizeof *from);
             }
-        shape_lightgrid_free(&grid);
     }
     return SHAPE_OK;
 }

@@ -115,4 +115,5 @@ void gl_tiles_free(gl_tiles *tiles)
 {
     glDeleteTextures(1, &tiles->lists);
     glDeleteTextures(1, &tiles->order);
+    glDeleteTextures(1, &tiles->primitives);
 }

@@ -39,6 +39,9 @@ void gl_set_scene(const gl_scene *scene, GLuint program)
     gl_bind(program, "nodes", 3, GL_TEXTURE_2D, scene->nodes);
     gl_bind(program, "noise_cells", 4, GL_TEXTURE_3D, scene->noise_cells);
     gl_set_int(program, "cloud_count", scene->shown_count);
+    if (scene->cloud_count == 1) /* its record as it was uploaded last */
+        glUniform4fv(glGetUniformLocation(program, "one_cloud"), GL_RECORD_TEXELS,
+                     scene->records + (size_t)(scene->cloud_count + 1) * GL_RECORD_TEXELS * 4);
     gl_bind(program, "noise_linear", 5, GL_TEXTURE_3D, scene->noise_linear);
     gl_bind(program, "grid_values", 14, GL_TEXTURE_3D, scene->grid_values);
 }
@@ -92,4 +95,6 @@ void gl_set_tiles(const gl_tiles *tiles, GLuint program)
     gl_bind(program, "tiles", 11, GL_TEXTURE_2D, tiles->lists);
     gl_bind(program, "tile_list", 15, GL_TEXTURE_2D, tiles->order);
     gl_set_int(program, "tile_columns", tiles->columns);
+    gl_bind(program, "tile_primitives", 16, GL_TEXTURE_2D, tiles->primitives);
+    gl_set_int(program, "tiles_listed", tiles->listed);
 }

@@ -194,8 +194,7 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
     return SHAPE_OK;
 }
 
-/* False where all corners of a cloud's box lie outside one side of the view's pyramid, or behind the eye. */
-static bool in_sight(const shape_volume_cloud *c, const shape_camera *camera)
+bool gl_in_sight(const shape_volume_cloud *c, const shape_camera *camera, double wider)
 {
     int outside[5] = {0};
     double width = shape_dvec3_length(camera->right), height = shape_dvec3_length(camera->up);
@@ -205,10 +204,10 @@ static bool in_sight(const shape_volume_cloud *c, const shape_camera *camera)
         p = shape_dvec3_sub(shape_frame_point(&c->frame, p), camera->origin);
         double x = shape_dvec3_dot(p, camera->right) / width, y = shape_dvec3_dot(p, camera->up) / height;
         double z = shape_dvec3_dot(p, camera->forward);
-        outside[0] += x > z * width;
-        outside[1] += -x > z * width;
-        outside[2] += y > z * height;
-        outside[3] += -y > z * height;
+        outside[0] += x > z * width * wider;
+        outside[1] += -x > z * width * wider;
+        outside[2] += y > z * height * wider;
+        outside[3] += -y > z * height * wider;
         outside[4] += z < 0;
     }
     for (int side = 0; side < 5; side++)
@@ -224,7 +223,7 @@ void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape
     int count = 0;
     for (int i = 0; i < scene->cloud_count; i++) {
         const shape_volume_cloud *c = &volume->clouds[i];
-        if (!c->tree->count || !in_sight(c, camera))
+        if (!c->tree->count || !gl_in_sight(c, camera, 1))
             continue;
         float *record = rows + (size_t)count * record_floats;
         scene->shown[count++] = i;

@@ -4,6 +4,7 @@
 #define SHAPE_LIGHTGRID_H
 
 #include "shape/opaque.h"
+#include "shape/sunsweep.h"
 #include "shape/view.h"
 #include "shape/volume.h"
 
@@ -35,6 +36,10 @@ typedef struct shape_lightgrid_options {
     int channel; /* of a coloured cloud's albedo, 0 red, 1 green, 2 blue, -1 the medium's alone; default -1. No matter for
                     clouds without colour */
     const shape_opaque *opaque; /* finished; throws shadows on the cells' middles; default NULL */
+    const shape_sunsweep
+        *sweep; /* of this volume and light, with this cloud: take value 0 from it; default NULL: march */
+    int scattering_resolution; /* solve the scattered light by no more cells along the longest side than this, and
+                                    interpolate; default 0: by all */
 } shape_lightgrid_options;
 
 shape_lightgrid_options shape_lightgrid_defaults(void);

@@ -1,0 +1,34 @@
+/* The sun's way into clouds, quickly: each cloud's density once a cell of a grid whose columns run along the sun, and
+ * running sums down these columns. So a grid costs its cells and not its cells times the steps of a march, and a cloud's
+ * shadow on others is a look-up. */
+#ifndef SHAPE_SUNSWEEP_H
+#define SHAPE_SUNSWEEP_H
+
+#include "shape/view.h"
+#include "shape/volume.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Running sums of clouds. Opaque; reading is thread-safe. */
+typedef struct shape_sunsweep shape_sunsweep;
+
+/* Sweeps the clouds that are asked for and those that throw shadows on them. cells[i]: cells along the longest side of
+ * cloud i's grid, 2 to 256, or 0 where its light is not asked for (it still throws shadows, by a grid of 16). Octaves of
+ * noise that are finer than a cell are taken as their mean. threads 0: all; the result does not depend on it. The volume
+ * must outlive the sweep. The caller destroys it. Errors: a number of cells out of range (SHAPE_ERROR_ARGUMENT), memory. */
+shape_status shape_sunsweep_create(const shape_volume *volume, const shape_light *light, const int *cells,
+                                   int threads, shape_sunsweep **made, shape_error *error);
+void shape_sunsweep_destroy(shape_sunsweep *sweep); /* NULL is allowed */
+
+/* How many clouds were swept, asked for or not. */
+size_t shape_sunsweep_count(const shape_sunsweep *sweep);
+/* The optical depth from a point of cloud number `cloud` (its frame) to the sun, through all clouds: trilinear between
+ * cells. 0 for a cloud that was not asked for. */
+float shape_sunsweep_depth(const shape_sunsweep *sweep, size_t cloud, shape_vec3 p);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
