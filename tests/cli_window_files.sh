@@ -83,7 +83,7 @@ shot day
 scene 160 >s.json
 unlike $all evening day 0.02
 cp large.neph a.neph
-unlike 200x100+100+10 cloud evening 0.02
+unlike 200x100+100+10 cloud evening 0.015
 printf 'v -2 0 0\nv 9 0 0\nv 9 4 0\nv -2 4 0\nf 1 2 3 4\n' >wall.obj
 unlike $all wall cloud 0.02
 echo '{"scene": 1, "clouds": [}' >s.json

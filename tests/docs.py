@@ -24,19 +24,26 @@ MAKE = {
     "old.neph": "neph-gauss -q --count 8 -o old.neph",
     "a.neph": "neph-gauss -q --count 8 -o a.neph",
     "b.neph": "neph-meta -q -o b.neph",
+    "before.neph": "neph-gauss -q --count 8 -o before.neph",
+    "after.neph": "neph-gauss -q --count 8 --seed 2 -o after.neph",
     "castellanus.lsys": "cp examples/castellanus.lsys .",
     "castellanus.neph": "neph-lsys -q examples/castellanus.lsys -o castellanus.neph",
     "smoke.vdb": "neph-gauss -q --count 8 | neph-vdb -q - -o smoke.vdb",
     "scan.raw": "neph-gauss -q --count 8 | neph-vdb -q - --up y --header -o scan.raw",
     "shape.glb": "cp examples/meshes/suzanne.glb shape.glb",
+    "house.glb": "cp examples/meshes/suzanne.glb house.glb",
+    "scene.json": "neph-gauss -q --count 8 -o scene.neph --save-scene scene.json",
+    "house.obj": "cp examples/meshes/suzanne.obj house.obj",
     "cycles.exr": "neph-gauss -q | neph-render -q - -o cycles.exr",
 }
 GIVEN = {
+    "docs/error.md": ["cloud.neph"],
     "docs/fields.md": ["old.neph"],
     "docs/from-blender.md": ["shape.glb"],  # of Blender, which is not run here
     "docs/generators.md": ["a.neph", "b.neph"],
     "docs/simplify.md": ["cloud.neph"],
-    "docs/viewer.md": ["castellanus.lsys", "castellanus.neph"],
+    "docs/viewer.md": ["castellanus.lsys", "castellanus.neph", "house.obj", "before.neph", "after.neph", "cloud.neph",
+                       "house.glb", "scene.json"],
     "docs/volumes.md": ["smoke.vdb", "scan.raw"],
     "docs/vdb.md": ["cycles.exr"],  # of Blender, which is not run here
 }
@@ -54,7 +61,10 @@ EXCEPTIONS = {
     "target_link_libraries": "the same",
     "blender ": "large; run with --blender, and by blender_vdb.sh",
     "gnuplot ": "draws what a benchmark measured",
-    "seq ": "needs GNU parallel",
+    "neph-render explosion.vdb ": "needs colour grids, which no program here writes; test_vdb_colour",
+    "neph-render smoke.vdb --colour-grid": "the same",
+    "sh examples/frames/parallel.sh": "draws 250 frames; cli_spread.sh runs it",
+    "sbatch ": "needs Slurm; tests/slurm.sh",
     "identify ": "of a picture made in the window; cli_window.sh",
     "neph-chart --size 320x180": "a quarter of an hour; cli_chart.sh runs neph-chart",
 }

@@ -13,8 +13,13 @@ neph-render)
     esac
     ;;
 neph-view)
-    set -- "$@" --size 16x9 --light-grid 8
+    set -- "$@" --size 16x9
     case $given in
+    *" --error "*) ;; # chooses grid and samples itself
+    *) set -- "$@" --light-grid 8 ;;
+    esac
+    case $given in
+    *" --error "*) ;;
     *" --bench "*) set -- "$@" --bench 2 ;;
     *" --frames "*..*) set -- "$@" --samples 1 --frames 0..1 ;;
     *" --headless "*) set -- "$@" --samples 1 ;;

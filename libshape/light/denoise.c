@@ -90,10 +90,12 @@ static void add_offset(const picture *p, int y, int dx, int dy, float *column, f
     }
 }
 
-/* The middle one of the variances of a pixel and its eight neighbours, channel c. */
-static float middle_variance(const picture *p, int x, int y, size_t c)
+/* The variance that is usual about a pixel, channel c: the mean of its own and its eight neighbours', unless most of them
+ * have next to none, as in the sky beside a cloud; then the middle one. */
+static float usual_variance(const picture *p, int x, int y, size_t c)
 {
-    float sorted[9];
+    const float little = 0.02f; /* of the mean: a cloud's middle one is more, however rare its bright paths are */
+    float sorted[9], sum = 0;
     int count = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
@@ -102,17 +104,18 @@ static float middle_variance(const picture *p, int x, int y, size_t c)
             for (; k > 0 && sorted[k - 1] > v; k--)
                 sorted[k] = sorted[k - 1];
             sorted[k] = v;
+            sum += v;
         }
-    return sorted[4];
+    return sorted[4] > little * sum / 9 ? sum / 9 : sorted[4];
 }
 
 /* A pixel moves no further than three standard deviations of its own: otherwise one bright path that strayed into the
- * sky, so noisy that the sky is like it, would leave a box as large as the window. Its own is what most of those about it
- * have, if that is more: a pixel that chance left dark moves, one of the sky beside a cloud does not. */
+ * sky, so noisy that the sky is like it, would leave a box as large as the window. Its own is what is usual about it, if
+ * that is more: a pixel that chance left dark moves, one of the sky beside a cloud does not. */
 static float bounded(const picture *p, int x, int y, size_t c, float value)
 {
     size_t at = offset_of(p, x, y) + c;
-    float most = 3 * sqrtf(fmaxf(p->raw[at], middle_variance(p, x, y, c))), own = p->radiance[at];
+    float most = 3 * sqrtf(fmaxf(p->raw[at], usual_variance(p, x, y, c))), own = p->radiance[at];
     return fminf(fmaxf(value, own - most), own + most);
 }
 

@@ -68,7 +68,7 @@ static void close_gauge(gauge *g)
 static double mean_radiance(const stability_energy *energy, const sample_scene *scene,
                             const shape_light *light)
 {
-    enum { RAYS = 720, PATHS = 6000 };
+    enum { RAYS = 720, PATHS = 60000 };
     const int rays = energy->march < 0 ? PATHS : RAYS;
     shape_random random = shape_random_seed(2, 0);
     gauge g;
