@@ -94,7 +94,8 @@ static void add_offset(const picture *p, int y, int dx, int dy, float *column, f
  * have next to none, as in the sky beside a cloud; then the middle one. */
 static float usual_variance(const picture *p, int x, int y, size_t c)
 {
-    const float little = 0.02f; /* of the mean: a cloud's middle one is more, however rare its bright paths are */
+    const float little =
+        0.02f; /* of the mean: a cloud's middle one is more, however rare its bright paths are */
     float sorted[9], sum = 0;
     int count = 0;
     for (int j = -1; j <= 1; j++)
