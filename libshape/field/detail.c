@@ -6,6 +6,9 @@
 
 #include <math.h>
 
+#include "field/density_model.h"
+#include "field/layer.h"
+
 enum { DISPLACE_OCTAVES = 2, DETAIL_OCTAVES = 2 };
 
 /* A second primitive counts up to four smoothnesses behind the nearest one, which itself counts where u <= 1. */
@@ -56,7 +59,7 @@ static void nearest_two(const shape_volume_cloud *cloud, shape_vec3 p, float *le
     *least = *second = INFINITY;
     for (size_t i = 0; i < tree->count;) {
         const shape_tree_node *node = &tree->nodes[i];
-        if (!detail_node_holds(node, p)) {
+        if (!density_node_holds(node, p)) {
             i = (size_t)node->skip;
             continue;
         }

@@ -1,22 +1,8 @@
-/* Private to field/: the pieces of a density that density.c, detail.c and layer.c share. */
+/* Private to field/: details on a cloud of primitives. */
 #ifndef SHAPE_FIELD_DETAIL_H
 #define SHAPE_FIELD_DETAIL_H
 
 #include "shape/volume.h"
-
-/* --- density.c: p in the cloud's frame, already displaced --- */
-
-/* The field's own fBm noise. */
-float density_fbm(const shape_volume_cloud *cloud, shape_vec3 p);
-/* Jiménez 2018 Eq. 2, for noise n at distance u; 0 to 1, also where n is 0 and kappa 1. */
-float density_gamma(float kappa, float n, float u);
-/* Jiménez 2018 Eq. 2 and Algorithm 1, at distance u. */
-float density_spheroid(const shape_volume_cloud *cloud, shape_vec3 p, float u);
-/* Eq. 20: the balls' field at p; Eq. 21: the density there. */
-float density_metaball_sum(const shape_primitives *list, shape_vec3 p);
-float density_metaball(const shape_volume_cloud *cloud, shape_vec3 p, float sum);
-
-/* --- detail.c --- */
 
 /* How far beyond a primitive's surface, in radii, it still counts for a cloud's density: the factor of detail_tree. */
 float detail_reach(const shape_field *field, float support);
@@ -24,16 +10,5 @@ float detail_reach(const shape_field *field, float support);
 void detail_prepare(shape_volume_cloud *cloud);
 /* Density at p of such a cloud; 0 outside its supports. */
 float detail_density(const shape_volume_cloud *cloud, shape_vec3 p);
-/* Whether a node of a tree holds p. */
-static inline bool detail_node_holds(const shape_tree_node *n, shape_vec3 p)
-{
-    return p.x >= n->min.x && p.x <= n->max.x && p.y >= n->min.y && p.y <= n->max.y && p.z >= n->min.z &&
-           p.z <= n->max.z;
-}
-
-/* --- layer.c --- */
-
-/* Density at p, already displaced, of a layer. */
-float layer_density(const shape_volume_cloud *cloud, shape_vec3 p);
 
 #endif

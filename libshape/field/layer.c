@@ -1,9 +1,11 @@
 /* The layer model (docs/fields.md): noise through thresholds A and B with coverage and cut (Páleník 2016 section 5.1;
  * article 004), inside a box, a sphere or two altitudes, thinning out towards their walls (article 003). Mirrored by
  * shaders/field/layer.glsl. */
+#include "field/layer.h"
+
 #include <math.h>
 
-#include "field/detail.h"
+#include "field/density_model.h"
 
 static float clamp01(float x)
 {
@@ -80,7 +82,7 @@ static float bounds_weight(const shape_volume_cloud *cloud, shape_vec3 p)
     for (size_t i = 0; i < tree->count;) {
         const shape_tree_node *node = &tree->nodes[i];
         /* A shell dips below its primitive's box, so there all are asked. */
-        if (!(cloud->field.layer.planet_radius > 0) && !detail_node_holds(node, p)) {
+        if (!(cloud->field.layer.planet_radius > 0) && !density_node_holds(node, p)) {
             i = (size_t)node->skip;
             continue;
         }

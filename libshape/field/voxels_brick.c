@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "field/detail.h"
+#include "field/density_model.h"
 #include "field/voxels_private.h"
 
 /* --- depths --- */

@@ -6,6 +6,7 @@
 #include "shape/grammar.h"
 #include "shape/random.h"
 
+enum { ARROW = 0x2192 }; /* U+2192, which stands for -> */
 enum { NO_NODE = -1, NO_RULE = -1, NAME_ROOM = 32, LETTERS = 128, GRAMMAR_SETTINGS_MAX = 32 };
 
 typedef struct place {
@@ -156,11 +157,16 @@ int grammar_expression(parser *p);
 /* The same, or a range A..B. */
 int grammar_argument(parser *p);
 
+/* grammar_table.c: whether a setting's name of at least two letters stands at the cursor as a word of its own. */
+bool grammar_at_setting(const parser *p);
+
+/* grammar_body.c */
+/* Symbols up to the statement's end, a ':' or, with `stop`, a setting's name. */
+void grammar_body(parser *p, bool stop, body *body);
+
 /* grammar_rule.c */
 /* The index of the statement's arrow and its length in cells; false where there is none. */
 bool grammar_find_arrow(const parser *p, size_t *arrow, int *length);
-/* Symbols up to the statement's end, a ':' or, with `stop`, a setting's name. */
-void grammar_body(parser *p, bool stop, body *body);
 void grammar_rule(parser *p, size_t arrow, int arrow_length);
 /* Compares each use of a symbol with the number of parameters that its rules have. */
 void grammar_check_uses(parser *p);
@@ -168,7 +174,5 @@ void grammar_check_uses(parser *p);
 /* grammar_setting.c */
 void grammar_settings_line(parser *p);
 void grammar_axiom(parser *p, place at, bool stop);
-/* Whether a setting's name of at least two letters stands at the cursor as a word of its own. */
-bool grammar_at_setting(const parser *p);
 
 #endif

@@ -1,96 +1,11 @@
-/* Settings lines of a grammar: "name value" pairs, checked against one table. */
-#include "generate/grammar_private.h"
+/* Settings lines of a grammar: "name value" pairs, checked against the table. */
+#include "generate/grammar_table.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
-typedef enum setting_kind {
-    SETTING_AXIOM,
-    SETTING_PUFFS,
-    SETTING_RANGE,  /* shape_grammar_range */
-    SETTING_WHOLE,  /* int */
-    SETTING_NUMBER, /* float */
-    SETTING_VECTOR, /* double[3] */
-    SETTING_CHOICE  /* int-sized enum, by its place in `words` */
-} setting_kind;
-
-typedef struct setting {
-    const char *name;
-    setting_kind kind;
-    size_t offset; /* in shape_grammar_settings */
-    double min, max;
-    const char *range; /* what is allowed, in words */
-    const char *words[6];
-} setting;
-
-#define AT(member) offsetof(shape_grammar_settings, member)
-static const setting settings[] = {
-    {"axiom", SETTING_AXIOM, 0, 0, 0, NULL, {NULL}},
-    {"puffs", SETTING_PUFFS, 0, 0, 0, NULL, {NULL}},
-    {"iterations",
-     SETTING_WHOLE,
-     AT(iterations),
-     0,
-     SHAPE_GRAMMAR_ITERATIONS_MAX,
-     "a whole number, 0 to 100000",
-     {NULL}},
-    {"angle", SETTING_RANGE, AT(angle), -1e6, 1e6, "degrees, -1e6 to 1e6", {NULL}},
-    {"radius", SETTING_RANGE, AT(radius), 1e-9, 1e9, "metres, above 0, at most 1e9", {NULL}},
-    {"length", SETTING_RANGE, AT(length), 0, 1e9, "metres, 0 to 1e9", {NULL}},
-    {"shrink", SETTING_RANGE, AT(shrink), 1e-9, 1000, "a factor above 0, at most 1000", {NULL}},
-    {"stretch", SETTING_VECTOR, AT(stretch), 1e-6, 1e6, "three factors X,Y,Z, each 1e-6 to 1e6", {NULL}},
-    {"model", SETTING_CHOICE, AT(field.model), 0, 0, NULL, {"uniform", "spheroid", "metaball", NULL}},
-    {"kappa", SETTING_NUMBER, AT(field.kappa), 0, 1, "0 to 1", {NULL}},
-    {"octaves", SETTING_WHOLE, AT(field.octaves), 1, 16, "a whole number, 1 to 16", {NULL}},
-    {"noise-scale", SETTING_NUMBER, AT(field.noise_scale), 1e-9, 1e9, "metres, above 0, at most 1e9", {NULL}},
-    {"edge", SETTING_NUMBER, AT(field.edge), 0, 1e9, "0 to 1e9", {NULL}},
-    {"smoothness", SETTING_NUMBER, AT(field.detail.smoothness), 0, 1, "0 to 1", {NULL}},
-    {"displace", SETTING_NUMBER, AT(field.detail.displace), 0, 1e9, "metres, 0 to 1e9", {NULL}},
-    {"displace-scale", SETTING_NUMBER, AT(field.detail.displace_scale), 0, 1e9, "metres, 0 to 1e9", {NULL}},
-    {"billow", SETTING_NUMBER, AT(field.detail.billow), 0, 1, "0 to 1", {NULL}},
-    {"wisp", SETTING_NUMBER, AT(field.detail.wisp), 0, 1, "0 to 1", {NULL}},
-    {"detail-depth", SETTING_NUMBER, AT(field.detail.detail_depth), 0, 1, "0 to 1", {NULL}},
-    {"detail-scale", SETTING_NUMBER, AT(field.detail.detail_scale), 0, 1e9, "metres, 0 to 1e9", {NULL}},
-    {"extinction", SETTING_NUMBER, AT(medium.extinction), 0, 1e9, "1/m, 0 to 1e9", {NULL}},
-    {"albedo", SETTING_NUMBER, AT(medium.albedo), 0, 1, "0 to 1", {NULL}},
-    {"phase",
-     SETTING_CHOICE,
-     AT(medium.phase),
-     0,
-     0,
-     NULL,
-     {"hg", "isotropic", "rayleigh", "mie", "two-lobe", NULL}},
-    {"g", SETTING_NUMBER, AT(medium.g), -0.9999, 0.9999, "-0.9999 to 0.9999", {NULL}},
-    {"g2", SETTING_NUMBER, AT(medium.g2), -0.9999, 0.9999, "-0.9999 to 0.9999", {NULL}},
-    {"lobe-mix", SETTING_NUMBER, AT(medium.lobe_mix), 0, 1, "0 to 1", {NULL}},
-    {"droplet", SETTING_NUMBER, AT(medium.droplet), 5, 50, "micrometres, 5 to 50", {NULL}},
-};
-#undef AT
-enum { SETTING_COUNT = sizeof settings / sizeof *settings };
-_Static_assert(sizeof(shape_model) == sizeof(int) && sizeof(shape_phase_kind) == sizeof(int),
-               "choices are ints");
-_Static_assert((int)SETTING_COUNT <= (int)GRAMMAR_SETTINGS_MAX, "make room for the settings' places");
-
-static const setting *find(const char *name)
-{
-    for (int i = 0; i < SETTING_COUNT; i++)
-        if (!strcmp(settings[i].name, name))
-            return &settings[i];
-    return NULL;
-}
-
-bool grammar_at_setting(const parser *p)
-{
-    char word[NAME_ROOM];
-    parser look = *p;
-    uint32_t before = p->next ? p->cells[p->next - 1].c : ' ';
-    if ((before != ' ' && before != '\t') || !grammar_word(&look, true, word) || !word[1] || !find(word))
-        return false;
-    uint32_t behind = grammar_peek(&look, 0);
-    return behind == 0 || behind == ' ' || behind == '\t';
-}
+#include "generate/grammar_private.h"
 
 /* To the next setting that can be recognised, after a mistake. */
 static void skip_to_setting(parser *p)
@@ -136,8 +51,8 @@ static bool signed_number(parser *p, double *value)
 }
 
 /* Numbers with a separator between, up to a blank. How many there were, or 0 after a report. */
-static int parse_numbers(parser *p, const setting *s, const char *form, const char *separator, int most,
-                         double values[3])
+static int parse_numbers(parser *p, const grammar_setting *s, const char *form, const char *separator,
+                         int most, double values[3])
 {
     char text[NAME_ROOM];
     place at = grammar_here(p);
@@ -171,7 +86,7 @@ static int parse_numbers(parser *p, const setting *s, const char *form, const ch
     return count;
 }
 
-static void parse_range(parser *p, const setting *s, shape_grammar_range *range)
+static void parse_range(parser *p, const grammar_setting *s, shape_grammar_range *range)
 {
     double v[3];
     place at = grammar_here(p);
@@ -185,7 +100,7 @@ static void parse_range(parser *p, const setting *s, shape_grammar_range *range)
     }
 }
 
-static void parse_whole(parser *p, const setting *s, int *value)
+static void parse_whole(parser *p, const grammar_setting *s, int *value)
 {
     double v[3];
     place at = grammar_here(p);
@@ -196,7 +111,7 @@ static void parse_whole(parser *p, const setting *s, int *value)
     *value = (int)v[0];
 }
 
-static void parse_vector(parser *p, const setting *s, double *value)
+static void parse_vector(parser *p, const grammar_setting *s, double *value)
 {
     double v[3];
     place at = grammar_here(p);
@@ -208,7 +123,7 @@ static void parse_vector(parser *p, const setting *s, double *value)
         memcpy(value, v, sizeof v);
 }
 
-static void parse_choice(parser *p, const setting *s, int *value)
+static void parse_choice(parser *p, const grammar_setting *s, int *value)
 {
     char word[NAME_ROOM] = "", shown[NAME_ROOM], all[96] = "";
     place at = grammar_here(p);
@@ -279,7 +194,7 @@ void grammar_axiom(parser *p, place at, bool stop)
     p->grammar->axiom = start;
 }
 
-static void parse_value(parser *p, const setting *s, place at)
+static void parse_value(parser *p, const grammar_setting *s, place at)
 {
     char *target = (char *)&p->grammar->settings + s->offset;
     grammar_skip_blanks(p);
@@ -313,10 +228,8 @@ static void parse_value(parser *p, const setting *s, place at)
 
 static void unknown(parser *p, const char *name, place at)
 {
-    const char *names[SETTING_COUNT + 1];
-    for (int i = 0; i < SETTING_COUNT; i++)
-        names[i] = settings[i].name;
-    names[SETTING_COUNT] = NULL;
+    const char *names[GRAMMAR_SETTINGS_MAX + 1];
+    grammar_setting_names(names);
     const char *near = grammar_nearest(name, names);
     bool rule_like = !name[1] && name[0] >= 'A' && name[0] <= 'Z';
     if (rule_like || grammar_peek(p, 0) == '(' || grammar_peek(p, 0) == ':')
@@ -340,14 +253,15 @@ void grammar_settings_line(parser *p)
             skip_to_setting(p);
             continue;
         }
-        const setting *s = find(!strcmp(word, "Axiom") || !strcmp(word, "AXIOM") ? "axiom" : word);
+        const grammar_setting *s =
+            grammar_setting_find(!strcmp(word, "Axiom") || !strcmp(word, "AXIOM") ? "axiom" : word);
         if (!s) {
             grammar_skip_blanks(p);
             unknown(p, word, at);
             skip_to_setting(p);
             continue;
         }
-        int *line = &p->setting_lines[s - settings];
+        int *line = &p->setting_lines[grammar_setting_index(s)];
         if (*line && s->kind != SETTING_AXIOM) /* the axiom says it itself, since it can also be a rule */
             grammar_mistake(p, at, "%s is set twice (first in line %d; keep one)", s->name, *line);
         *line = at.line;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "primitive/grid_look.h"
-#include "light/track.h"
+#include "light/track_chance.h"
 
 enum { BRICK = SHAPE_GRID_BRICK, SIDE = SHAPE_GRID_SIDE, SHARES = 255 };
 

@@ -3,40 +3,12 @@
 #define SHAPE_LIGHT_TRACK_H
 
 #include "light/majorant.h"
+#include "light/track_chance.h"
 #include "shape/random.h"
 
 struct shape_tracer {
     majorant_grid grid;
 };
-
-/* A uniform number above 0 and below 1. */
-static inline double track_unit(shape_random *random)
-{
-    return ((double)shape_random_u32(random) + 0.5) * 0x1p-32;
-}
-
-/* Unlike fmin and fmax no calls: nothing here is NaN. */
-static inline double track_min(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static inline double track_max(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-/* Low weights live on with a chance in proportion, and then as much heavier. */
-static inline bool track_roulette(double *weight, shape_random *random)
-{
-    const double below = 0.1;
-    if (*weight >= below)
-        return true;
-    if (track_unit(random) * below >= *weight)
-        return false;
-    *weight = below;
-    return true;
-}
 
 /* Draws where a ray from p (metres from the grid's origin) along the unit vector d collides. depth is the optical depth,
  * drawn by the caller as -log of a uniform number, after which the first tentative collision comes. True: p has moved

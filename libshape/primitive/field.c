@@ -1,7 +1,5 @@
-/* The settings of a cloud's field: defaults, ranges, and the supports that follow from them (docs/fields.md). */
+/* The settings of a cloud's field and of its medium: defaults and ranges (docs/fields.md). */
 #include "shape/set.h"
-
-#include <math.h>
 
 shape_layer shape_layer_defaults(void)
 {
@@ -16,6 +14,30 @@ shape_layer shape_layer_defaults(void)
                          .coverage = 0.5f,
                          .ramp = {0.45f, 0.65f}};
     return layer;
+}
+
+shape_field shape_field_defaults(void)
+{
+    shape_field field = {.model = SHAPE_MODEL_SPHEROID,
+                         .kappa = 0.5f,
+                         .octaves = 5,
+                         .noise_scale = 0,
+                         .edge = 4.2f,
+                         .seed = 1};
+    field.layer = shape_layer_defaults();
+    return field;
+}
+
+shape_medium shape_medium_defaults(void)
+{
+    shape_medium medium = {.extinction = 2,
+                           .albedo = 1,
+                           .phase = SHAPE_PHASE_HG,
+                           .g = 0.85f,
+                           .g2 = -0.3f,
+                           .lobe_mix = 0.3f,
+                           .droplet = 10};
+    return medium;
 }
 
 bool shape_detail_is_on(const shape_detail *detail)
@@ -119,134 +141,26 @@ shape_status shape_field_check(const shape_field *field, shape_error *error)
     return status;
 }
 
-/* --- supports --- */
-
-float shape_cloud_support(const shape_cloud *cloud, const shape_primitives *list)
+static shape_status out_of_range(const char *what, double value, const char *allowed, shape_error *error)
 {
-    const shape_field *field = &cloud->field;
-    if (field->model == SHAPE_MODEL_METABALL)
-        return sqrtf((float)shape_primitives_count(list));
-    if (list->grid)
-        return 1.7320508f; /* its one ellipsoid touches the box */
-    if (field->model != SHAPE_MODEL_LAYER)
-        return 1.0f + field->detail.smoothness;
-    switch (field->layer.bounds) {
-    case SHAPE_BOUNDS_SPHERE:
-        break;
-    case SHAPE_BOUNDS_BOX:
-        return 1.7320508f;
-    case SHAPE_BOUNDS_ALTITUDES:
-        return 1.4142135f;
-    }
-    return 1.0f;
+    return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "%s is %g (it must be %s)", what, value, allowed);
 }
 
-/* How far a shell of a planet dips below the flat slab of the same primitive, at the rim. */
-static double sagitta(double planet_radius, double rim, double half_thickness)
+shape_status shape_medium_check(const shape_medium *medium, shape_error *error)
 {
-    double radius = fmax(planet_radius - half_thickness, 0);
-    return radius - sqrt(fmax(radius * radius - rim * rim, 0));
-}
-
-static double list_sagitta(const shape_primitives *list, double planet_radius)
-{
-    double most = 0;
-    for (size_t i = 0; i < list->sphere_count; i++) {
-        double r = (double)list->spheres[i].radius;
-        most = fmax(most, sagitta(planet_radius, r, r));
-    }
-    for (size_t i = 0; i < list->ellipsoid_count; i++) {
-        const shape_ellipsoid *e = &list->ellipsoids[i];
-        most = fmax(most, sagitta(planet_radius, fmax((double)e->a, (double)e->c), (double)e->b));
-    }
-    return most;
-}
-
-float shape_cloud_margin(const shape_cloud *cloud, const shape_primitives *list)
-{
-    const shape_field *field = &cloud->field;
-    float margin = field->detail.displace;
-    if (field->model == SHAPE_MODEL_LAYER && field->layer.bounds == SHAPE_BOUNDS_ALTITUDES &&
-        field->layer.planet_radius > 0)
-        margin += (float)(1.0001 * list_sagitta(list, (double)field->layer.planet_radius));
-    return margin;
-}
-
-shape_sphere shape_sphere_grow(const shape_sphere *sphere, float support, float margin)
-{
-    shape_sphere grown = *sphere;
-    grown.radius = sphere->radius * support + margin;
-    return grown;
-}
-
-shape_ellipsoid shape_ellipsoid_grow(const shape_ellipsoid *ellipsoid, float support, float margin)
-{
-    /* With s = sqrt(trace A^2 / trace M^2): (1 + 1/s) A^2 + (1 + s) M^2 holds the sum of both. */
-    shape_ellipsoid grown = *ellipsoid;
-    float a = ellipsoid->a * support, b = ellipsoid->b * support, c = ellipsoid->c * support;
-    if (margin > 0) {
-        float s = sqrtf((a * a + b * b + c * c) / (3 * margin * margin));
-        float keep = 1 + 1 / s, add = (1 + s) * margin * margin;
-        a = sqrtf(keep * a * a + add);
-        b = sqrtf(keep * b * b + add);
-        c = sqrtf(keep * c * c + add);
-    }
-    grown.a = a, grown.b = b, grown.c = c;
-    return grown;
-}
-
-/* The box around what an ellipsoid bounds in a layer. A linear image's half extents: of the cube's, the sums of the rows'
- * magnitudes; of the cylinder's, that of its axis and the norm of the rest. */
-static shape_box bounds_box(const shape_ellipsoid *e, shape_bounds bounds)
-{
-    if (bounds == SHAPE_BOUNDS_SPHERE)
-        return shape_ellipsoid_box(e, 1);
-    double m[3][3], half[3];
-    shape_quat_matrix(e->q, m);
-    for (int i = 0; i < 3; i++) {
-        double x = fabs(m[i][0]) * (double)e->a, y = fabs(m[i][1]) * (double)e->b,
-               z = fabs(m[i][2]) * (double)e->c;
-        half[i] = y + (bounds == SHAPE_BOUNDS_BOX ? x + z : sqrt(x * x + z * z));
-    }
-    shape_box box = {{(float)(e->x - half[0]), (float)(e->y - half[1]), (float)(e->z - half[2])},
-                     {(float)(e->x + half[0]), (float)(e->y + half[1]), (float)(e->z + half[2])}};
-    return box;
-}
-
-/* The box of a list's spheres, each radius times `grow`; empty where there are none. */
-static shape_box spheres_box(const shape_primitives *list, float grow)
-{
-    shape_box box = shape_box_empty();
-    shape_vec3 low = box.min, high = box.max;
-    for (size_t i = 0; i < list->sphere_count; i++) {
-        const shape_sphere *s = &list->spheres[i];
-        float r = s->radius * grow;
-        low.x = s->x - r < low.x ? s->x - r : low.x;
-        low.y = s->y - r < low.y ? s->y - r : low.y;
-        low.z = s->z - r < low.z ? s->z - r : low.z;
-        high.x = s->x + r > high.x ? s->x + r : high.x;
-        high.y = s->y + r > high.y ? s->y + r : high.y;
-        high.z = s->z + r > high.z ? s->z + r : high.z;
-    }
-    box.min = low;
-    box.max = high;
-    return box;
-}
-
-shape_box shape_cloud_box(const shape_cloud *cloud, const shape_primitives *list)
-{
-    bool grid = list->grid != NULL, layer = grid || cloud->field.model == SHAPE_MODEL_LAYER;
-    shape_bounds bounds = grid ? SHAPE_BOUNDS_BOX : cloud->field.layer.bounds;
-    float grow = layer ? 1 : shape_cloud_support(cloud, list), margin = shape_cloud_margin(cloud, list);
-    shape_box box = spheres_box(list, grow);
-    for (size_t i = 0; i < list->ellipsoid_count; i++) {
-        const shape_ellipsoid *e = &list->ellipsoids[i];
-        box = shape_box_join(box, layer ? bounds_box(e, bounds) : shape_ellipsoid_box(e, grow));
-    }
-    if (margin > 0 && !shape_box_is_empty(box)) {
-        shape_vec3 by = {margin, margin, margin};
-        box.min = shape_vec3_sub(box.min, by);
-        box.max = shape_vec3_add(box.max, by);
-    }
-    return box;
+    if (!(medium->extinction >= 0 && medium->extinction <= 1e9f))
+        return out_of_range("extinction", medium->extinction, "0 to 1e9", error);
+    if (!(medium->albedo >= 0 && medium->albedo <= 1))
+        return out_of_range("albedo", medium->albedo, "0 to 1", error);
+    if ((int)medium->phase < SHAPE_PHASE_HG || medium->phase > SHAPE_PHASE_TWO_LOBE)
+        return out_of_range("the phase function", medium->phase, "a known one", error);
+    if (!(medium->g > -1 && medium->g < 1))
+        return out_of_range("g", medium->g, "above -1 and below 1", error);
+    if (!(medium->g2 > -1 && medium->g2 < 1))
+        return out_of_range("g2", medium->g2, "above -1 and below 1", error);
+    if (!(medium->lobe_mix >= 0 && medium->lobe_mix <= 1))
+        return out_of_range("lobe-mix", medium->lobe_mix, "0 to 1", error);
+    if (!(medium->droplet >= 5 && medium->droplet <= 50))
+        return out_of_range("droplet", medium->droplet, "5 to 50", error);
+    return SHAPE_OK;
 }

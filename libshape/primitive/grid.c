@@ -316,37 +316,3 @@ void shape_grid_copy(const shape_grid *grid, float scale, const int at[3], const
             }
     }
 }
-
-/* --- clouds --- */
-
-shape_status shape_set_add_grid(shape_set *set, const char *name, shape_grid *grid, const shape_frame *frame,
-                                size_t *index, shape_error *error)
-{
-    size_t made;
-    shape_status status = shape_set_add_cloud(set, name, &made, error);
-    if (status) {
-        shape_grid_release(grid);
-        return status;
-    }
-    shape_cloud *cloud = &set->clouds[made];
-    shape_primitives *list = shape_set_list(set, made);
-    list->grid = grid;
-    cloud->frame = *frame;
-    cloud->field.model = SHAPE_MODEL_GRID;
-    /* How fine the field is, for all that chooses steps by it: voxels, in steps of a quarter at the finest. */
-    cloud->field.noise_scale = 4;
-    cloud->field.octaves = 2;
-    float half[3];
-    for (int a = 0; a < 3; a++)
-        half[a] = 0.5f * (float)(grid->points[a] - 1);
-    shape_ellipsoid box = {.x = half[0],
-                           .y = half[1],
-                           .z = half[2],
-                           .a = half[0],
-                           .b = half[1],
-                           .c = half[2],
-                           .q = shape_quat_identity()};
-    if (index)
-        *index = made;
-    return shape_primitives_add_ellipsoid(list, box, error);
-}

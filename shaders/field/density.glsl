@@ -1,4 +1,4 @@
-// Density at a point of the loaded cloud, the mirror of libshape/field/density.c.
+// Density at a point of the loaded cloud, the mirror of libshape/field/density_model.c.
 const float METABALL_POLE = 1e-6;
 
 // u^2 of one primitive; content as in a tree's leaf.

@@ -1,5 +1,5 @@
 /* Formulas that divide by zero or cancel: rotations, metaballs, thresholds, phase functions, the sky. */
-#include "field/detail.h"
+#include "field/density_model.h"
 #include "row.h"
 #include "shape/meshfit.h"
 #include "shape/phase.h"
