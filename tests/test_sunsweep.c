@@ -195,24 +195,33 @@ static void the_march_agrees(void **state)
     shape_set_destroy(set);
 }
 
+/* Two clouds in each other's shadow; by the sweep's own grid and by a coarser one, both large enough for more threads. */
 static void threads_change_no_bit(void **state)
 {
     (void)state;
     shape_set *set = cumulus(2);
-    shape_volume *volume = new_volume(set);
+    shape_cloud *other = new_cloud(set, SHAPE_MODEL_SPHEROID);
     shape_light light = light_from(60, 40);
-    const int cells = 30;
-    shape_sunsweep *sweep = new_sweep(volume, light, &cells, 1);
-    shape_lightgrid one = build(volume, 0, light, 30, sweep, 1);
-    shape_sunsweep_destroy(sweep);
-    for (int threads = 2; threads <= 5; threads += 3) {
-        sweep = new_sweep(volume, light, &cells, threads);
-        shape_lightgrid many = build(volume, 0, light, 30, sweep, threads);
-        assert_memory_equal(one.cells, many.cells, cell_count(&one) * SHAPE_LIGHTGRID_VALUES * sizeof(float));
-        shape_lightgrid_free(&many);
+    for (int axis = 0; axis < 3; axis++)
+        other->frame.m[axis][3] = 6 * (&light.sun.x)[axis];
+    add_sphere(set, 1, 0, 0, 0, 2);
+    shape_volume *volume = new_volume(set);
+    for (int grid = 40; grid >= 20; grid -= 20) {
+        const int cells[2] = {40, 0};
+        shape_sunsweep *sweep = new_sweep(volume, light, cells, 1);
+        assert_int_equal(shape_sunsweep_count(sweep), 2);
+        shape_lightgrid one = build(volume, 0, light, grid, sweep, 1);
         shape_sunsweep_destroy(sweep);
+        for (int threads = 2; threads <= 5; threads += 3) {
+            sweep = new_sweep(volume, light, cells, threads);
+            shape_lightgrid many = build(volume, 0, light, grid, sweep, threads);
+            assert_memory_equal(one.cells, many.cells,
+                                cell_count(&one) * SHAPE_LIGHTGRID_VALUES * sizeof(float));
+            shape_lightgrid_free(&many);
+            shape_sunsweep_destroy(sweep);
+        }
+        shape_lightgrid_free(&one);
     }
-    shape_lightgrid_free(&one);
     shape_volume_destroy(volume);
     shape_set_destroy(set);
 }

@@ -12,7 +12,12 @@
 #include "field/row.h"
 #include "light/sunsweep.h"
 
-enum { CASTER_CELLS = 16, ROWS = 8 /* of a layer, for which primitives are gathered at once */ };
+enum {
+    CASTER_CELLS = 16,
+    ROWS = 8,    /* of a layer, for which primitives are gathered at once, at most */
+    BLOCKS = 16, /* of rows at least, where there is more than one thread: so they end together */
+    LARGE = 8192 /* cells: below these waking a thread takes longer than it saves */
+};
 
 static const float MOST = 60000; /* a half-float's range */
 
@@ -80,14 +85,14 @@ static void find_range(const sun_columns *c, int side, int layer, int *first, in
     *end = (int)floorf((float)(c->size[side] - 1) - moved) - c->first[side] + 1;
 }
 
-/* Densities of a layer's rows [row, row + ROWS). */
+/* Densities of a layer's rows [row, row + rows). */
 static shape_status fill_rows(const shape_volume_cloud *cloud, const sun_columns *c, int layer, int row,
-                              row_forms *list, shape_error *error)
+                              int rows, row_forms *list, shape_error *error)
 {
     int first, end, first_row, end_row;
     find_range(c, 0, layer, &first, &end);
     find_range(c, 1, layer, &first_row, &end_row);
-    int from = row > first_row ? row : first_row, to = row + ROWS < end_row ? row + ROWS : end_row;
+    int from = row > first_row ? row : first_row, to = row + rows < end_row ? row + rows : end_row;
     if (first >= end || from >= to)
         return SHAPE_OK;
     const bool grid = cloud->field.model == SHAPE_MODEL_GRID;
@@ -150,30 +155,34 @@ static shape_volume_cloud with_fewer_octaves(const shape_volume_cloud *cloud, co
     return copy;
 }
 
-static shape_status sweep_cloud(const shape_volume_cloud *cloud, shape_dvec3 sun, int resolution, int threads,
-                                sun_columns *c, shape_error *error)
+/* Rows [row, row + rows) of columns, from the top to the bottom: nobody else needs them, so threads never wait. */
+static shape_status sweep_rows(const shape_volume_cloud *cloud, const sun_columns *c, int row, int rows,
+                               row_forms *list, shape_error *error)
 {
     enum { MOST_COLUMNS = 3 * 258 };
-    lay_out(cloud, sun, resolution, c);
-    c->depth = calloc((size_t)c->count[0] * (size_t)c->count[1] * (size_t)c->size[2], sizeof *c->depth);
-    if (!c->depth)
-        return shape_error_memory(error);
-    const shape_volume_cloud coarse = with_fewer_octaves(cloud, c);
-    const int blocks = (c->count[1] + ROWS - 1) / ROWS, all = blocks * c->size[2];
+    float above[MOST_COLUMNS];
+    for (int layer = 0; layer < c->size[2]; layer++)
+        if (fill_rows(cloud, c, layer, row, rows, list, error))
+            return error->status;
+    for (int j = row; j < row + rows && j < c->count[1]; j++)
+        add_up(c, j, above);
+    return SHAPE_OK;
+}
+
+static shape_status sweep_blocks(const shape_volume_cloud *cloud, const sun_columns *c, int rows, int threads,
+                                 shape_error *error)
+{
+    const int blocks = (c->count[1] + rows - 1) / rows;
     shape_status status = SHAPE_OK;
-#pragma omp parallel num_threads(threads) if (threads > 1)
+#pragma omp parallel num_threads(threads)
     {
         row_forms list = {0};
         shape_error own = {0};
-        float above[MOST_COLUMNS];
-#pragma omp for schedule(dynamic, 8)
-        for (int i = 0; i < all; i++)
+#pragma omp for schedule(dynamic, 1) nowait
+        for (int i = 0; i < blocks; i++)
             if (!own.status)
-                fill_rows(&coarse, c, i / blocks, i % blocks * ROWS, &list, &own);
+                sweep_rows(cloud, c, i * rows, rows, &list, &own);
         free(list.items);
-#pragma omp for schedule(static)
-        for (int row = 0; row < c->count[1]; row++)
-            add_up(c, row, above);
         if (own.status) {
 #pragma omp critical
             {
@@ -184,6 +193,22 @@ static shape_status sweep_cloud(const shape_volume_cloud *cloud, shape_dvec3 sun
         }
     }
     return status;
+}
+
+static shape_status sweep_cloud(const shape_volume_cloud *cloud, shape_dvec3 sun, int resolution, int threads,
+                                sun_columns *c, shape_error *error)
+{
+    lay_out(cloud, sun, resolution, c);
+    const size_t cells = (size_t)c->count[0] * (size_t)c->count[1] * (size_t)c->size[2];
+    c->depth = calloc(cells, sizeof *c->depth);
+    if (!c->depth)
+        return shape_error_memory(error);
+    const shape_volume_cloud coarse = with_fewer_octaves(cloud, c);
+    int rows = ROWS;
+    threads = cells < LARGE ? 1 : threads;
+    while (threads > 1 && rows > 1 && c->count[1] < rows * BLOCKS)
+        rows /= 2;
+    return sweep_blocks(&coarse, c, rows, threads, error);
 }
 
 /* --- looking up --- */
@@ -308,34 +333,49 @@ static void add_row(const sun_columns *c, const shape_frame *frame, int row, sha
     }
 }
 
+/* What the cloud itself throws on a part of its cells: a layer of columns where its grid is the one that was swept, else all
+ * that has the same z. */
+static void fill_part(const sun_columns *own, bool same, int part, shape_lightgrid *grid)
+{
+    const shape_frame identity = shape_frame_identity();
+    if (same)
+        fill_own(own, part, grid);
+    for (int y = 0; y < grid->size[1] && !same; y++)
+        add_row(own, &identity, part * grid->size[1] + y, grid);
+}
+
+/* The shadows of all others on the cells of one z, in their order. */
+static void add_casters(const shape_sunsweep *s, size_t cloud, int z, shape_lightgrid *grid)
+{
+    for (size_t i = s->pairs.first[cloud]; i < s->pairs.first[cloud + 1]; i++) {
+        const size_t caster = s->pairs.casters[i];
+        shape_frame frame = between(&s->volume->clouds[cloud], &s->volume->clouds[caster]);
+        for (int y = 0; y < grid->size[1]; y++)
+            add_row(&s->columns[caster], &frame, z * grid->size[1] + y, grid);
+    }
+    const size_t slab = (size_t)grid->size[0] * (size_t)grid->size[1];
+    float *depth = grid->cells + (size_t)z * slab * SHAPE_LIGHTGRID_VALUES;
+    for (size_t i = 0; i < slab; i++, depth += SHAPE_LIGHTGRID_VALUES)
+        *depth = *depth < MOST ? *depth : MOST;
+}
+
 void sunsweep_fill(const shape_sunsweep *s, size_t cloud, int threads, shape_lightgrid *grid)
 {
     const sun_columns *own = &s->columns[cloud];
-    const shape_frame identity = shape_frame_identity();
     const bool same = same_grid(own, grid);
-    const int rows = grid->size[1] * grid->size[2];
-    const size_t cells = (size_t)rows * (size_t)grid->size[0];
-#pragma omp parallel num_threads(threads) if (threads > 1)
+    const int parts = same ? own->size[2] : grid->size[2];
+    const size_t casters = s->pairs.first[cloud + 1] - s->pairs.first[cloud],
+                 cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    /* Its own grid is copied, a cell in a few nanoseconds; elsewhere each cell is looked up. */
+    threads = cells * (casters + (same ? 0 : 1)) < 2 * LARGE ? 1 : threads;
+#pragma omp parallel num_threads(threads)
     {
 #pragma omp for schedule(static)
-        for (int i = 0; i < (same ? own->size[2] : rows); i++) {
-            if (same)
-                fill_own(own, i, grid);
-            else
-                add_row(own, &identity, i, grid);
-        }
-        for (size_t i = s->pairs.first[cloud]; i < s->pairs.first[cloud + 1]; i++) {
-            const sun_columns *caster = &s->columns[s->pairs.casters[i]];
-            shape_frame frame = between(&s->volume->clouds[cloud], &s->volume->clouds[s->pairs.casters[i]]);
+        for (int i = 0; i < parts; i++)
+            fill_part(own, same, i, grid);
 #pragma omp for schedule(static)
-            for (int row = 0; row < rows; row++)
-                add_row(caster, &frame, row, grid);
-        }
-#pragma omp for schedule(static)
-        for (size_t i = 0; i < cells; i++) {
-            float *depth = grid->cells + i * SHAPE_LIGHTGRID_VALUES;
-            *depth = *depth < MOST ? *depth : MOST;
-        }
+        for (int z = 0; z < grid->size[2]; z++)
+            add_casters(s, cloud, z, grid);
     }
 }
 
@@ -360,6 +400,8 @@ static shape_status choose_cells(const shape_sunsweep *s, const int *wanted, int
     return SHAPE_OK;
 }
 
+/* Each thread takes whole clouds where there are many, else all take one after the other. Not one loop with an `if`: OpenMP
+ * takes that for a region within a region, and makes new threads for each inner one. */
 static shape_status sweep_all(const shape_sunsweep *s, shape_dvec3 sun, const int *cells, int threads,
                               shape_error *error)
 {
@@ -367,19 +409,22 @@ static shape_status sweep_all(const shape_sunsweep *s, shape_dvec3 sun, const in
     for (int i = 0; i < count; i++)
         swept += cells[i] != 0;
     shape_status status = SHAPE_OK;
-    bool many = swept >= 2 * threads; /* then each thread takes whole clouds */
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (many && threads > 1)
+    if (swept < 2 * threads) {
+        for (int i = 0; i < count && !status; i++)
+            if (cells[i])
+                status = sweep_cloud(&s->volume->clouds[i], sun, cells[i], threads, &s->columns[i], error);
+        return status;
+    }
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (int i = 0; i < count; i++) {
         shape_error own = {0};
-        if (!cells[i])
+        if (!cells[i] || !sweep_cloud(&s->volume->clouds[i], sun, cells[i], 1, &s->columns[i], &own))
             continue;
-        if (sweep_cloud(&s->volume->clouds[i], sun, cells[i], many ? 1 : threads, &s->columns[i], &own)) {
 #pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
+        {
+            status = own.status;
+            if (error)
+                *error = own;
         }
     }
     return status;

@@ -1,5 +1,6 @@
 /* The light pass: the sun's optical depth in a grid of 40 cells over 35 spheres, swept and marched, on one thread and on
- * two; and the scattered light. Least of several runs, in turn. Bound: 2 ms swept on one thread (exit 1 above it). */
+ * two; and the scattered light. Least of several runs, in turn. Bounds: swept, 2 ms on one thread, and less on two (else
+ * exit 1). */
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +9,7 @@
 #include "shape/gaussian.h"
 #include "shape/lightgrid.h"
 
-enum { CELLS = 40, RUNS = 15 };
+enum { CELLS = 40, RUNS = 60, FEW_RUNS = 3 };
 
 static void must(shape_status status, const shape_error *error)
 {
@@ -72,7 +73,7 @@ int main(void)
     for (int k = 0; k < RUNS; k++)
         for (int i = 0; i < 3; i++)
             for (int threads = 1; threads <= 2; threads++) {
-                if (i == 2 && k >= 3)
+                if (i > 0 && k >= FEW_RUNS)
                     continue;
                 double took = run(volume, rows[i].sweep, rows[i].scattering, threads);
                 least[i][threads - 1] = took < least[i][threads - 1] ? took : least[i][threads - 1];
@@ -82,5 +83,5 @@ int main(void)
         printf("\"%s\",%.2f,%.2f\n", rows[i].name, least[i][0], least[i][1]);
     shape_volume_destroy(volume);
     shape_set_destroy(set);
-    return least[0][0] > 2;
+    return least[0][0] > 2 || least[0][1] >= least[0][0];
 }

@@ -176,20 +176,15 @@ static shape_status bake(const gl_order *order, size_t cloud, float wanted, floa
     return SHAPE_OK;
 }
 
-static shape_status bake_all(const gl_order *order, gl_baked *baked, float *wanted, float *voxels,
-                             shape_error *error)
+/* Each cloud on one thread. */
+static shape_status bake_many(const gl_order *order, const float *wanted, const float *voxels, int threads,
+                              gl_baked *baked, shape_error *error)
 {
-    int count = (int)order->volume->cloud_count, threads = omp_get_max_threads();
-    size_t each = share_of_each(order, wanted, find_wanted(order, wanted));
-    int chosen = choose(order, wanted, each, baked, voxels);
     shape_status status = SHAPE_OK;
-    threads = order->threads > 0 ? order->threads : threads;
-    bool many = chosen >= 2 * threads; /* then each thread takes whole clouds */
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (many)
-    for (int i = 0; i < count; i++) {
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (int i = 0; i < baked->count; i++) {
         shape_error own = {0};
-        if (status || !(voxels[i] > 0) ||
-            !bake(order, (size_t)i, wanted[i], voxels[i], many ? 1 : threads, &baked->dense[i], &own))
+        if (!(voxels[i] > 0) || !bake(order, (size_t)i, wanted[i], voxels[i], 1, &baked->dense[i], &own))
             continue;
 #pragma omp critical
         {
@@ -198,7 +193,22 @@ static shape_status bake_all(const gl_order *order, gl_baked *baked, float *want
                 *error = own;
         }
     }
+    return status;
+}
+
+static shape_status bake_all(const gl_order *order, gl_baked *baked, float *wanted, float *voxels,
+                             shape_error *error)
+{
+    size_t each = share_of_each(order, wanted, find_wanted(order, wanted));
+    int chosen = choose(order, wanted, each, baked, voxels);
+    int threads = order->threads > 0 ? order->threads : omp_get_max_threads();
+    shape_status status = SHAPE_OK;
     baked->made = chosen;
+    if (chosen >= 2 * threads)
+        return bake_many(order, wanted, voxels, threads, baked, error);
+    for (int i = 0; i < baked->count && !status; i++)
+        if (voxels[i] > 0)
+            status = bake(order, (size_t)i, wanted[i], voxels[i], threads, &baked->dense[i], error);
     return status;
 }
 

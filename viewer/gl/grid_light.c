@@ -133,7 +133,28 @@ static shape_status build(const gl_order *order, const shape_sunsweep *sweep, si
     return SHAPE_OK;
 }
 
-/* Lights the chosen clouds: each on one thread where they are many. */
+/* Each cloud on one thread. */
+static shape_status build_many(const gl_order *order, const shape_sunsweep *sweep, const int *cells,
+                               int threads, gl_light *light, shape_error *error)
+{
+    shape_status status = SHAPE_OK;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (int i = 0; i < light->count; i++) {
+        shape_error own = {0};
+        if (!cells[i] || !build(order, sweep, (size_t)i, cells[i], 1, &light->lit[i], &own))
+            continue;
+#pragma omp critical
+        {
+            status = own.status;
+            if (error)
+                *error = own;
+        }
+    }
+    return status;
+}
+
+/* Lights the chosen clouds, one after the other unless they are many. (Not one loop with an `if`: OpenMP makes new threads
+ * for each region within a region, even where the outer one has a single thread.) */
 static shape_status build_all(const gl_order *order, const int *cells, gl_light *light, shape_error *error)
 {
     enum { FINEST_SWEEP = 256 };
@@ -149,20 +170,12 @@ static shape_status build_all(const gl_order *order, const int *cells, gl_light 
     }
     if (!status && chosen && !order->paper)
         status = shape_sunsweep_create(order->volume, order->light, swept, order->threads, &sweep, error);
-    bool many = chosen >= 2 * threads;
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (many)
-    for (int i = 0; i < count; i++) {
-        shape_error own = {0};
-        if (status || !cells[i] ||
-            !build(order, sweep, (size_t)i, cells[i], many ? 1 : threads, &light->lit[i], &own))
-            continue;
-#pragma omp critical
-        {
-            status = own.status;
-            if (error)
-                *error = own;
-        }
-    }
+    if (!status && chosen >= 2 * threads)
+        status = build_many(order, sweep, cells, threads, light, error);
+    else
+        for (int i = 0; i < count && !status; i++)
+            if (cells[i])
+                status = build(order, sweep, (size_t)i, cells[i], threads, &light->lit[i], error);
     light->made = chosen;
     shape_sunsweep_destroy(sweep);
     free(swept);
