@@ -398,7 +398,8 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
                                .g = rest,
                                .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
                                .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
-                               .moments = moments};
+                               .moments = moments,
+                               .visits = &grid->visits};
         for (int axis = 0; axis < 3; axis++) {
             p.size[axis] = grid->size[axis];
             double column = sqrt(cloud->frame.m[0][axis] * cloud->frame.m[0][axis] +

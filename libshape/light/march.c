@@ -169,6 +169,7 @@ static shape_status light_channels(shape_marcher *m, size_t i, shape_dvec3 eye, 
             return status;
         cells = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
         m->work->cells += cells;
+        m->work->visits += cloud->grid.visits;
         float *seen = calloc(cells, 4 * sizeof *seen);
         if (!seen)
             return shape_error_memory(error);
@@ -199,6 +200,7 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
     shape_status status = build_grid(m, i, -1, &cloud->grid, error);
     const int *n = cloud->grid.size;
     m->work->cells += (uint64_t)n[0] * (uint64_t)n[1] * (uint64_t)n[2];
+    m->work->visits += cloud->grid.visits;
     if (status || m->options.light != SHAPE_MARCH_GRID)
         return status;
     cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 4 * sizeof *cloud->seen);

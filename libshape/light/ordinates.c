@@ -3,6 +3,7 @@
 #include "light/ordinates.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,9 +11,27 @@ enum { OCTANTS = 8, PER_OCTANT = 3 };
 
 static const float low = 0.3500212f, high = 0.8688903f;
 
+/* All lanes of a cell at once. */
+typedef float lanes __attribute__((vector_size(ORDINATES_LANES * sizeof(float))));
+typedef int32_t lanes_mask __attribute__((vector_size(ORDINATES_LANES * sizeof(int32_t))));
+
+static inline lanes load(const float *from)
+{
+    lanes v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+static inline void store(float *to, lanes v)
+{
+    memcpy(to, &v, sizeof v);
+}
+
 typedef struct direction {
     float omega[3];
-    float upper, lower; /* radiance that comes in from the sky: 1 from above, 1 from below */
+    float kx, ky, kz; /* cells that it crosses a metre */
+    lanes border;     /* what comes in from outside: a sky of 1 from above, or from below */
+    float sun_factor; /* radiance of the sun's first collisions there, for an irradiance of 1 */
 } direction;
 
 static direction make_direction(const ordinates_problem *p, int octant, int which)
@@ -21,66 +40,89 @@ static direction make_direction(const ordinates_problem *p, int octant, int whic
     for (int axis = 0; axis < 3; axis++)
         d.omega[axis] = (axis == which ? high : low) * (octant >> axis & 1 ? 1.0f : -1.0f);
     float rise = d.omega[0] * p->up.x + d.omega[1] * p->up.y + d.omega[2] * p->up.z;
-    d.upper = rise < 0 ? 1.0f : 0.0f; /* what travels down came from above */
-    d.lower = 1 - d.upper;
+    float upper = rise < 0 ? 1.0f : 0.0f; /* what travels down came from above */
+    d.border = (lanes){0, upper, 1 - upper, 0};
+    d.kx = fabsf(d.omega[0]) / p->cell[0];
+    d.ky = fabsf(d.omega[1]) / p->cell[1];
+    d.kz = fabsf(d.omega[2]) / p->cell[2];
+    float cosine = d.omega[0] * p->sun_travel.x + d.omega[1] * p->sun_travel.y + d.omega[2] * p->sun_travel.z;
+    d.sun_factor = p->albedo * (1 + 3 * p->g * cosine) / (4 * 3.14159265f);
     return d;
 }
 
-/* The source function of all lanes in one direction: scattered light, and the sun's first collisions. The two are cut
- * at 0 together: cut one by one they would make light, backwards of a forward peak. */
-static inline void source(const ordinates_problem *p, const float *moments, float share, float beam,
-                          const direction *d, float sun_factor, float out[ORDINATES_LANES])
+/* What a cell has for all directions. */
+typedef struct cell_state {
+    lanes moments[ORDINATES_MOMENTS];
+    float extinction, albedo, beam;
+} cell_state;
+
+/* The source function in one direction: scattered light, and the sun's first collisions. The two are cut at 0 together: cut
+ * one by one they would make light, backwards of a forward peak. */
+static inline lanes source(const ordinates_problem *p, const cell_state *c, const direction *d)
 {
-    const float sun[ORDINATES_LANES] = {sun_factor * (share * beam), 0, 0, 0}, albedo = share * p->albedo;
-    for (int lane = 0; lane < ORDINATES_LANES; lane++) {
-        float along = d->omega[0] * moments[ORDINATES_LANES + lane] +
-                      d->omega[1] * moments[2 * ORDINATES_LANES + lane] +
-                      d->omega[2] * moments[3 * ORDINATES_LANES + lane];
-        float value = albedo * (moments[lane] + 3 * p->g * along) + sun[lane];
-        out[lane] = value > 0 ? value : 0;
-    }
+    const lanes sun = {d->sun_factor * c->beam, 0, 0, 0};
+    lanes along = d->omega[0] * c->moments[1] + d->omega[1] * c->moments[2] + d->omega[2] * c->moments[3];
+    lanes value = c->albedo * (c->moments[0] + 3 * p->g * along) + sun;
+    return (lanes)((lanes_mask)value & (value > 0));
 }
 
-/* One direction through the grid, in the order in which light travels; adds its share to `sum`. */
-static void sweep(const ordinates_problem *p, const direction *d, float *radiance, float *sum)
+static inline cell_state read_cell(const ordinates_problem *p, size_t cell)
+{
+    float share = p->shares ? p->shares[cell] : 1;
+    cell_state c = {
+        .extinction = p->extinction[cell], .albedo = share * p->albedo, .beam = share * p->beam[cell]};
+    for (int m = 0; m < ORDINATES_MOMENTS; m++)
+        c.moments[m] = load(p->moments + cell * ORDINATES_CELL + m * ORDINATES_LANES);
+    return c;
+}
+
+/* An octant's directions at one cell: in_x goes on to the next one, *plane holds what comes from the layer before and takes
+ * what goes to the next; before: the row before. Writes the cell's sum. */
+static inline void cross(const ordinates_problem *p, const direction d[PER_OCTANT], size_t cell,
+                         lanes in_x[PER_OCTANT], const lanes *before, lanes *plane, bool first_row,
+                         bool first_layer, float *sum)
+{
+    const float weight = 1.0f / (OCTANTS * PER_OCTANT);
+    const cell_state c = read_cell(p, cell);
+    lanes total[ORDINATES_MOMENTS];
+    for (int i = 0; i < PER_OCTANT; i++) {
+        lanes in_y = first_row ? d[i].border : before[i], in_z = first_layer ? d[i].border : plane[i];
+        float scale = 1 / (d[i].kx + d[i].ky + d[i].kz + c.extinction);
+        lanes out =
+            (d[i].kx * in_x[i] + d[i].ky * in_y + d[i].kz * in_z + c.extinction * source(p, &c, &d[i])) *
+            scale;
+        in_x[i] = plane[i] = out;
+        out *= weight;
+        total[0] = i ? total[0] + out : out;
+        for (int axis = 0; axis < 3; axis++)
+            total[axis + 1] = i ? total[axis + 1] + out * d[i].omega[axis] : out * d[i].omega[axis];
+    }
+    for (int m = 0; m < ORDINATES_MOMENTS; m++)
+        store(sum + m * ORDINATES_LANES, total[m]);
+}
+
+/* An octant's directions through the grid, in the order in which their light travels; their share into `sum`. plane: of as
+ * many cells as a layer has. */
+static void sweep(const ordinates_problem *p, int octant, lanes *plane, float *sum)
 {
     const int nx = p->size[0], ny = p->size[1], nz = p->size[2];
-    const float weight = 1.0f / (OCTANTS * PER_OCTANT);
-    float cosine =
-        d->omega[0] * p->sun_travel.x + d->omega[1] * p->sun_travel.y + d->omega[2] * p->sun_travel.z;
-    float sun_factor = p->albedo * (1 + 3 * p->g * cosine) / (4 * 3.14159265f);
-    float kx = fabsf(d->omega[0]) / p->cell[0], ky = fabsf(d->omega[1]) / p->cell[1],
-          kz = fabsf(d->omega[2]) / p->cell[2];
-    const float border[ORDINATES_LANES] = {0, d->upper, d->lower, 0};
-    int dx = d->omega[0] > 0 ? 1 : -1, dy = d->omega[1] > 0 ? 1 : -1, dz = d->omega[2] > 0 ? 1 : -1;
+    direction d[PER_OCTANT];
+    for (int i = 0; i < PER_OCTANT; i++)
+        d[i] = make_direction(p, octant, i);
+    int dx = octant & 1 ? 1 : -1, dy = octant & 2 ? 1 : -1, dz = octant & 4 ? 1 : -1;
     for (int k = 0; k < nz; k++) {
         int z = dz > 0 ? k : nz - 1 - k;
         for (int j = 0; j < ny; j++) {
             int y = dy > 0 ? j : ny - 1 - j;
-            size_t row = ((size_t)z * ny + y) * nx;
-            const float *from_y = j ? radiance + (row - (size_t)(dy * nx)) * ORDINATES_LANES : NULL;
-            const float *from_z = k ? radiance + (row - (size_t)(dz * nx * ny)) * ORDINATES_LANES : NULL;
-            float in_x[ORDINATES_LANES];
-            memcpy(in_x, border, sizeof in_x);
+            lanes in_x[PER_OCTANT];
+            for (int i = 0; i < PER_OCTANT; i++)
+                in_x[i] = d[i].border;
             for (int i = 0; i < nx; i++) {
                 int x = dx > 0 ? i : nx - 1 - i;
-                size_t cell = row + (size_t)x;
-                const float *in_y = from_y ? from_y + (size_t)x * ORDINATES_LANES : border;
-                const float *in_z = from_z ? from_z + (size_t)x * ORDINATES_LANES : border;
-                float *out = radiance + cell * ORDINATES_LANES, *add = sum + cell * ORDINATES_CELL;
-                float sigma = p->extinction[cell], scale = 1 / (kx + ky + kz + sigma), s[ORDINATES_LANES];
-                source(p, p->moments + cell * ORDINATES_CELL, p->shares ? p->shares[cell] : 1, p->beam[cell],
-                       d, sun_factor, s);
-                for (int lane = 0; lane < ORDINATES_LANES; lane++) {
-                    float value =
-                        (kx * in_x[lane] + ky * in_y[lane] + kz * in_z[lane] + sigma * s[lane]) * scale;
-                    in_x[lane] = out[lane] = value;
-                    value *= weight;
-                    add[lane] += value;
-                    add[ORDINATES_LANES + lane] += value * d->omega[0];
-                    add[2 * ORDINATES_LANES + lane] += value * d->omega[1];
-                    add[3 * ORDINATES_LANES + lane] += value * d->omega[2];
-                }
+                size_t cell = ((size_t)z * (size_t)ny + (size_t)y) * (size_t)nx + (size_t)x;
+                lanes *here = plane + ((size_t)y * (size_t)nx + (size_t)x) * PER_OCTANT;
+                const lanes *before = j ? here - dy * nx * PER_OCTANT : here;
+                cross(p, d, cell, in_x, before, here, j == 0, k == 0, sum + cell * ORDINATES_CELL);
             }
         }
     }
@@ -111,25 +153,22 @@ shape_status ordinates_solve(const ordinates_problem *p, int iterations, float t
 {
     float last_change = 0;
     size_t cells = (size_t)p->size[0] * (size_t)p->size[1] * (size_t)p->size[2];
+    const size_t layer = (size_t)p->size[0] * (size_t)p->size[1] * PER_OCTANT;
     /* Each octant sums into memory of its own and the sums are added in order: equal for any number of threads. */
     float *sums = malloc(OCTANTS * cells * ORDINATES_CELL * sizeof *sums);
-    float *radiance = malloc(OCTANTS * cells * ORDINATES_LANES * sizeof *radiance);
-    if (!sums || !radiance) {
+    lanes *planes = malloc(OCTANTS * layer * sizeof *planes);
+    if (!sums || !planes) {
         free(sums);
-        free(radiance);
+        free(planes);
         return shape_error_memory(error);
     }
     for (int round = 0; round < iterations; round++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
-        for (int octant = 0; octant < OCTANTS; octant++) {
-            float *sum = sums + (size_t)octant * cells * ORDINATES_CELL;
-            memset(sum, 0, cells * ORDINATES_CELL * sizeof *sum);
-            for (int which = 0; which < PER_OCTANT; which++) {
-                direction d = make_direction(p, octant, which);
-                sweep(p, &d, radiance + (size_t)octant * cells * ORDINATES_LANES, sum);
-            }
-        }
+        for (int octant = 0; octant < OCTANTS; octant++)
+            sweep(p, octant, planes + (size_t)octant * layer, sums + (size_t)octant * cells * ORDINATES_CELL);
         float change, peak;
+        if (p->visits)
+            *p->visits += cells;
         gather(p, sums, cells, threads, &change, &peak);
         /* Changes shrink like a geometric series; what is left of it is the error. */
         float ratio = last_change > 0 ? fminf(change / last_change, 0.99f) : 0.99f;
@@ -138,6 +177,6 @@ shape_status ordinates_solve(const ordinates_problem *p, int iterations, float t
         last_change = change;
     }
     free(sums);
-    free(radiance);
+    free(planes);
     return SHAPE_OK;
 }

@@ -2,6 +2,8 @@
 #ifndef SHAPE_LIGHT_ORDINATES_H
 #define SHAPE_LIGHT_ORDINATES_H
 
+#include <stdint.h>
+
 #include "shape/status.h"
 #include "shape/vector.h"
 
@@ -20,6 +22,7 @@ typedef struct ordinates_problem {
     shape_vec3 sun_travel;   /* unit direction in which sun light travels, grid's frame */
     shape_vec3 up;           /* the world's up, grid's frame, unit */
     float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
+    uint64_t *visits;        /* cells times rounds are added; NULL: not counted */
 } ordinates_problem;
 
 /* Source iteration, `iterations` times at the most, until what is left is estimated below `tolerance` of the largest mean

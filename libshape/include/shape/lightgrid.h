@@ -26,6 +26,7 @@ typedef struct shape_lightgrid {
     shape_box box;  /* cloud's frame */
     float *cells;   /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
     float *albedos; /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
+    uint64_t visits; /* what it took: cells times rounds of the solution for scattered light */
 } shape_lightgrid;
 
 typedef struct shape_lightgrid_options {

@@ -141,9 +141,10 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
 shape_status shape_march_render(const shape_marcher *marcher, const shape_view *view, float *radiance,
                                 bool *cancelled, shape_error *error);
 
-/* What a marcher has done: cells of all light grids, and points of the pictures' rays that were looked at. */
+/* What a marcher has done: cells of all light grids, these times rounds of the solution for their scattered light, and
+ * points of the pictures' rays that were looked at. */
 typedef struct shape_march_work {
-    uint64_t cells, looks;
+    uint64_t cells, visits, looks;
 } shape_march_work;
 shape_march_work shape_marcher_work(const shape_marcher *marcher);
 
