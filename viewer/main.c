@@ -20,7 +20,7 @@
 
 static bool headless, paper_lod, flight;
 static int method, maker = -1;
-static const char *const makers[] = {"neph-gauss", "neph-meta"};
+static const char *const makers[] = {"neph-gauss", "neph-meta", "neph-layer"};
 static int64_t bench_frames, largest, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
@@ -40,8 +40,8 @@ static const cli_option view_options[] = {
      "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
      "[off]",
      &error_given, true},
-    {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta",
-     "no IN: what neph-gauss or neph-meta makes, whose options are in the panel [IN]", NULL, true},
+    {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta|layer",
+     "no IN: what neph-gauss, neph-meta or neph-layer makes, whose options are in the panel [IN]", NULL, true},
     {"split", 0, CLI_NUMBER, &split_share, 0, 1, "S",
      "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
