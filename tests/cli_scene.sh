@@ -134,6 +134,38 @@ sed -n 5p told | grep -q '"extinction": 1.5' || fail "keep-depth does not halve 
 sed -n 2p told | grep -q '"extinction": 3, "albedo": 0.5' || fail "the entry's medium does not stand over the scene's"
 grep -q '"ball-2"' told && grep -q '"ball-4"' told || fail "copies have no names of their own"
 
+# Edits change single clouds after all are made, about their own origins, and hide them; a mistake names its place. They may
+# be left to a program that shows them.
+cat >edits.json <<'END'
+{"scene": 1, "clouds": [{"file": "ball.neph", "name": "ball", "copies": [{}, {"translate": [10, 0, 0]}, {"translate": [20, 0, 0]}]}],
+ "edits": [{"cloud": "ball-2", "scale": 2, "translate": [0, 3, 0], "medium": {"extinction": 7}}, {"cloud": "ball", "hidden": true}]}
+END
+"$bin/neph-info" --json edits.json | tr -d '\n' | sed 's/{"name"/\n&/g' >told
+[ "$(grep -c '"name"' told)" -eq 2 ] || fail "a hidden cloud is there: $(cat told)"
+sed -n 2p told | grep -q '"bounds": \[\[8, 1, -2\], \[12, 5, 2\]\]' || fail "an edit does not scale and move: $(sed -n 2p told)"
+sed -n 2p told | grep -q '"extinction": 7' || fail "an edit does not change the medium: $(sed -n 2p told)"
+"$bin/neph-edit" -q edits.json --leave-edits 3 -o left.neph
+"$bin/neph-info" --json left.neph | grep -q '"ball".*' || fail "--leave-edits hides a cloud"
+sed 's/"ball-2"/"bull"/' edits.json >bad.json
+refused 'bad.json: edits[0].cloud: there is no cloud "bull"' "$bin/neph-info" bad.json
+sed 's/"extinction": 7/"extinction": -7/' edits.json >bad.json
+refused 'bad.json: edits[0].medium.extinction' "$bin/neph-edit" bad.json --leave-edits 3 -o x.neph
+# The ground and the time of day are the command line's.
+view="--headless --size 32x18 --light-grid 8 --samples 1 --eye 2,6,40 --target 0,1,0"
+# shellcheck disable=SC2086
+"$bin/neph-view" -q gauss.neph $view --ground -1 --ground-colour 0.1,0.2,0.3 --day 9 --latitude 30 -o a.pfm --save-scene ground.json
+grep -q '"ground": {"height": -1, "albedo": \[0.1, 0.2, 0.3' ground.json || fail "the ground is not saved: $(cat ground.json)"
+grep -q '"day": {"hour": 9, "latitude": 30, "declination": 0}' ground.json || fail "the day is not saved: $(cat ground.json)"
+"$bin/neph-view" -q ground.json --headless -o b.pfm
+cmp -s a.pfm b.pfm || fail "the ground and the day of a scene are another picture"
+# shellcheck disable=SC2086
+"$bin/neph-render" -q gauss.neph --size 32x18 --eye 2,6,40 --target 0,1,0 --method march --light single --ground -1 \
+    --ground-colour 0.1,0.2,0.3 -o a.pfm
+"$bin/neph-render" -q ground.json --sun 60,40 --method march --light single -o b.pfm
+"$bin/neph-render" -q ground.json --method march --light single -o c.pfm
+"$bin/neph-render" --compare a.pfm b.pfm --tolerance 0.02 >/dev/null || fail "neph-render shows another ground"
+! cmp -s b.pfm c.pfm || fail "neph-render does not know the scene's time of day"
+
 # A thousand copies of one file (of three clouds) and a thousand generated clouds take a tenth of a second; ten seconds of a
 # processor would be a mistake in the way they are made.
 awk 'BEGIN { printf "{\"scene\": 1, \"clouds\": [{\"file\": \"gauss.neph\", \"copies\": [{}"

@@ -72,9 +72,13 @@ refused "2018" a.neph --ground 0 --method paper --headless -o x.png
 refused "needs --ground" a.neph --ground-colour 1,1,1 --headless -o x.png
 refused "one file" a.neph b.neph --frames 0 -o x%d.png
 refused "one file" a.neph b.neph --headless --error 0.1 -o x.png
-refused "save-scene" a.neph b.neph --headless --save-scene x.json -o x.png
 refused "standard input" - - --headless -o x.png
 refused "one argument too many\|too many" a.neph b.neph a.neph --headless -o x.png
+
+# --- a scene of both: the second is what it is compared with
+picture a.neph b.neph --split 0.3 -o a.pfm --save-scene two.json
+"$bin/neph-view" -q two.json --headless -o b.pfm
+cmp a.pfm b.pfm || fail "the scene of two files is another picture: $(cat two.json)"
 
 # --- generators: what the window starts with is what their programs make
 "$bin/neph-gauss" -q --seed 7 -o gauss.neph

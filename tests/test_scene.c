@@ -51,10 +51,14 @@ static const char *const everything =
     "\"unit\": 0.01, \"albedo\": [0.2, 0.3, 0.1], \"translate\": [1, -2, 3], \"rotate\": [0, 45, 0], "
     "\"scale\": [1, 2, 1], \"mirror\": \"x\"}, {\"file\": \"b.glb\", \"albedo\": 0.8, \"up\": \"z\"}], "
     "\"medium\": {\"albedo\": 0.9}, "
-    "\"sun\": {\"azimuth\": 100, \"height\": -2.5, \"irradiance\": 3, \"angle\": 1}, "
+    "\"sun\": {\"azimuth\": 100, \"height\": -2.5, \"irradiance\": 3, \"angle\": 1, "
+    "\"day\": {\"hour\": 9.5, \"declination\": -3}}, "
     "\"lamp\": {\"position\": [0, 5, 0], \"intensity\": [100, 50, 25]}, \"sky\": [0.1, 0.2, 0.3], "
     "\"camera\": {\"eye\": [0, 0, 5], \"target\": [0, 1, 0], \"fov\": 30, \"size\": [64, 36]}, "
-    "\"exposure\": -0.5}";
+    "\"exposure\": -0.5, \"ground\": {\"height\": -2, \"albedo\": [0.1, 0.2, 0.3]}, "
+    "\"edits\": [{\"cloud\": \"sheep-2\", \"medium\": {\"g\": 0.25}, \"translate\": [1, 2, 3], "
+    "\"rotate\": [0, 90, 0], \"scale\": 0.5}, {\"cloud\": \"sheep\", \"hidden\": true, \"note\": \"z\"}], "
+    "\"view\": {\"method\": \"exact\", \"split\": true, \"wind\": [1, 0, 0.5]}, \"compare\": \"b.neph\"}";
 
 static void check_option(const shape_scene_option *option, const char *name, const char *text)
 {
@@ -100,10 +104,23 @@ static void all_keys_are_read(void **state)
     assert_true(scene->meshes[2].up == SHAPE_SCENE_UP_Z && scene->meshes[2].albedo[1] == 0.8);
     assert_true(scene->sun_given && scene->sun[0] == 100 && scene->sun[1] == -2.5);
     assert_true(scene->sun_irradiance[2] == 3 && scene->sun_angle == 1);
+    assert_true(scene->day_given && scene->day.hour == 9.5 && scene->day.latitude == 50 &&
+                scene->day.declination == -3);
     assert_true(scene->lamp_given && scene->lamp[1] == 5 && scene->lamp_intensity[2] == 25);
     assert_true(scene->sky == SHAPE_SKY_CONSTANT && scene->sky_radiance[1] == 0.2);
     assert_true(scene->eye[2] == 5 && scene->target[1] == 1 && scene->fov == 30 && scene->size[1] == 36);
     assert_true(scene->exposure_given && scene->exposure == -0.5);
+    assert_true(scene->ground_given && scene->ground == -2 && scene->ground_albedo[2] == 0.3);
+    assert_int_equal(scene->edit_count, 2);
+    const shape_scene_edit *moved = &scene->edits[0], *gone = &scene->edits[1];
+    assert_string_equal(moved->cloud, "sheep-2");
+    check_option(&moved->medium.items[0], "g", "0.25");
+    assert_true(moved->translate[2] == 3 && moved->rotate[1] == 90 && moved->scale == 0.5 && !moved->hidden);
+    assert_true(gone->hidden && gone->scale == 1 && !strcmp(gone->note, "z"));
+    assert_string_equal(shape_scene_find_option(&scene->view, "method"), "exact");
+    assert_string_equal(shape_scene_find_option(&scene->view, "wind"), "1,0,0.5");
+    assert_null(shape_scene_find_option(&scene->view, "split"));
+    assert_string_equal(scene->compare, "b.neph");
     shape_scene_destroy(scene);
 }
 
@@ -240,7 +257,14 @@ static void mistakes_have_their_place(void **state)
         {HEAD "\"meshes\": [{\"file\": \"a\", \"scale\": 0}]}", "meshes[0].scale: 0 is out of range"},
         {HEAD "\"meshes\": [{\"file\": \"a\", \"keep-depth\": true}]}",
          "meshes[0]: there is no key \"keep-depth\""},
-        {HEAD "\"lightning\": 1}", "the keys are scene, clouds, meshes, medium"},
+        {HEAD "\"lightning\": 1}", "the keys are scene, clouds, meshes, ground"},
+        {HEAD "\"edits\": [{\"hidden\": true}]}", "edits[0]: names no cloud"},
+        {HEAD "\"edits\": [{\"cloud\": \"a\"}, {\"cloud\": \"a\"}]}", "edits[1]: the cloud \"a\" is edited already"},
+        {HEAD "\"edits\": [{\"cloud\": \"a\", \"scale\": [1, 1, 1]}]}", "edits[0].scale: expected a number"},
+        {HEAD "\"edits\": [{\"cloud\": \"a\", \"hidden\": 1}]}", "edits[0].hidden: expected true or false"},
+        {HEAD "\"ground\": {\"height\": 2e6}}", "ground.height: 2000000 is out of range"},
+        {HEAD "\"sun\": {\"day\": {\"hour\": 25}}}", "sun.day.hour: 25 is out of range"},
+        {HEAD "\"compare\": \"\"}", "compare: is empty"},
         {HEAD "\"note\": 3}", "note: expected a text"},
         {HEAD "\"camera\": {\"eye\": [0, 0]}}", "camera.eye: expected three numbers"},
         {HEAD "\"camera\": {\"eye\": [0, 0, \"1\"]}}", "camera.eye[2]: expected a number"},
@@ -440,9 +464,64 @@ static void names_are_relative_to_the_scene(void **state)
     }
 }
 
+/* A picture that neph-view's window has written is a scene; cut anywhere, or without the text, it is a mistake. Built by
+ * hand from the formats' descriptions. */
+static void pictures_hold_scenes(void **state)
+{
+    (void)state;
+    static const char scene_text[] = "{\"scene\": 1, \"clouds\": [], \"exposure\": 2}";
+    unsigned char file[3][256];
+    size_t sizes[3], text = sizeof scene_text - 1;
+    for (int kind = 0; kind < 2; kind++) { /* PNG: a text chunk of bytes, then one of UTF-8 */
+        unsigned char *at = file[kind], *length;
+        const char head[] = "\x89PNG\r\n\x1a\n\0\0\0\2IDAT12ABCD";
+        memcpy(at, head, sizeof head - 1);
+        at += sizeof head - 1;
+        length = at;
+        memcpy(at + 4, kind ? "iTXt" : "tEXt", 4);
+        at += 8;
+        memcpy(at, SHAPE_SCENE_PICTURE_KEY, sizeof SHAPE_SCENE_PICTURE_KEY);
+        at += sizeof SHAPE_SCENE_PICTURE_KEY;
+        memset(at, 0, 4);
+        at += kind ? 4 : 0; /* not compressed, by no method, no language, no other key */
+        memcpy(at, scene_text, text);
+        at += text;
+        size_t size = (size_t)(at - length) - 8;
+        const unsigned char big_endian[4] = {0, 0, (unsigned char)(size >> 8), (unsigned char)size};
+        memcpy(length, big_endian, 4);
+        memset(at, 0, 4); /* the sum is the picture's reader's to check */
+        sizes[kind] = (size_t)(at + 4 - file[kind]);
+    }
+    unsigned char *at = file[2];
+    const char head[] = "\x76\x2f\x31\x01\2\0\0\0name\0int\0\4\0\0\0abcd" SHAPE_SCENE_PICTURE_KEY "\0string";
+    memcpy(at, head, sizeof head);
+    at += sizeof head;
+    const unsigned char little_endian[4] = {(unsigned char)text, 0, 0, 0};
+    memcpy(at, little_endian, 4);
+    memcpy(at + 4, scene_text, text);
+    sizes[2] = sizeof head + 4 + text;
+    for (int kind = 0; kind < 3; kind++) {
+        shape_error error = {SHAPE_OK, ""};
+        shape_scene *scene = NULL;
+        assert_true(shape_scene_is(file[kind], sizes[kind]));
+        if (shape_scene_decode(file[kind], sizes[kind], "p", &scene, &error))
+            fail_msg("%d: %s", kind, error.text);
+        assert_true(scene->exposure == 2);
+        shape_scene_destroy(scene);
+        for (size_t cut = 0; cut + 5 < sizes[kind]; cut++) { /* on the heap, so that a byte too far shows */
+            unsigned char *part = malloc(cut + 1);
+            memcpy(part, file[kind], cut);
+            scene = NULL;
+            assert_int_not_equal(shape_scene_decode(part, cut, "p", &scene, &error), SHAPE_OK);
+            free(part);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(all_keys_are_read),
+        cmocka_unit_test(pictures_hold_scenes),
                                        cmocka_unit_test(meshes_stand_where_they_are_put),
                                        cmocka_unit_test(written_scenes_read_back),
                                        cmocka_unit_test(numbers_survive),

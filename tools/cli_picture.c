@@ -74,6 +74,8 @@ void cli_picture_apply(const shape_set *set, shape_view *view, shape_light *ligh
     *view = shape_view_defaults();
     *light = shape_light_defaults();
     apply_light(light);
+    if (v->day_given)
+        shape_day_apply(&v->day, light);
     view->width = (int)v->size[0];
     view->height = (int)v->size[1];
     view->fov = v->fov;

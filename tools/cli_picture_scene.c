@@ -32,6 +32,8 @@ void cli_picture_use_scene(const shape_scene *scene)
     cli_picture *v = &cli_picture_values;
     if (!v->sun_given) /* a sun that the command line names shines, whatever the scene says */
         take(scene->sun_none, dark, 3, v->sun_irradiance, &v->sun_irradiance_given);
+    v->day_given = !v->sun_given && scene->day_given; /* a sun of the command line stands still */
+    v->day = scene->day;
     take(scene->sun_given, scene->sun, 2, v->sun, &v->sun_given);
     take(scene->sun_irradiance_given, scene->sun_irradiance, 3, v->sun_irradiance, &v->sun_irradiance_given);
     take(scene->sun_angle_given, &scene->sun_angle, 1, &v->sun_angle, &v->sun_angle_given);
@@ -70,6 +72,10 @@ static void save_light(const cli_picture *v, const shape_light *light, shape_sce
     scene->sun_none = false;
     scene->sun_given = scene->sun_irradiance_given = scene->sky_given = true;
     save_sun(v, light, scene);
+    scene->day_given = v->day_given;
+    scene->day = v->day;
+    for (int i = 0; i < 3 && v->day_given; i++)
+        scene->sun_irradiance[i] = v->sun_irradiance[i]; /* the air takes its share again */
     scene->sun_angle_given = v->sun_angle_given;
     scene->sun_angle = v->sun_angle;
     scene->lamp_given = v->lamp_given;

@@ -29,6 +29,11 @@ bool cli_outside_allowed(void)
     return allow_outside;
 }
 
+const char *cli_save_path(void)
+{
+    return save_path;
+}
+
 bool cli_save_wanted(void)
 {
     return save_path != NULL;

@@ -188,6 +188,13 @@ static void add_entry(maker *m, size_t index)
     cli_set_place("%s", "");
 }
 
+static size_t left_clouds;
+
+void cli_scene_leave_edits(size_t clouds)
+{
+    left_clouds = clouds;
+}
+
 shape_set *cli_scene_make(const shape_scene *scene, const char *path)
 {
     maker m = {
@@ -197,5 +204,6 @@ shape_set *cli_scene_make(const shape_scene *scene, const char *path)
         add_entry(&m, i);
     }
     cli_progress("making clouds", 1);
+    cli_scene_edit(scene, m.shown, left_clouds, m.set);
     return m.set;
 }

@@ -16,6 +16,8 @@ bool cli_outside_allowed(void);
 /* Ends the program, exit 2, where --save-scene cannot be done with these arguments. */
 void cli_save_check(const cli_common *common);
 bool cli_save_wanted(void);
+/* The file that --save-scene names, or NULL. */
+const char *cli_save_path(void);
 /* Writes the scene to the file that --save-scene names. */
 void cli_save_scene(const shape_scene *scene);
 /* A file's name as seen from the folder of that scene; a note says so where it lies outside. The caller frees it. */
@@ -24,6 +26,13 @@ char *cli_save_name(const char *path);
 /* Makes all clouds of a scene. path is the scene's, for its folder.
  * Mistakes end the program, exit 1. The caller destroys the set. */
 shape_set *cli_scene_make(const shape_scene *scene, const char *path);
+/* Whether an edit that a panel has made is left to the program that shows it: of the first `clouds` clouds, cli_scene_make
+ * leaves the edits out from now on, but checks them. */
+void cli_scene_leave_edits(size_t clouds);
+/* Edits the clouds from `first` on, as the scene says; see cli_scene_edit.c. */
+void cli_scene_edit(const shape_scene *scene, const char *shown, size_t first, shape_set *set);
+/* Field and medium of one edit put over those of a cloud; its place and whether it is hidden are the caller's. */
+void cli_scene_edit_medium(const shape_scene_edit *edit, const char *place, shape_cloud *cloud);
 /* The real path of a file that the scene names, or the program ends; the caller frees it. */
 char *cli_scene_file(const char *scene_path, const char *file);
 

@@ -14,7 +14,7 @@
 static struct {
     double translate[3], rotate[3], scale[3], pivot[3];
     bool keep_depth, hollow, prune, grow, clip;
-    int64_t thin, grow_levels, grow_count, primitives;
+    int64_t leave_edits, thin, grow_levels, grow_count, primitives;
     double simplify;
     double grow_ratio[2], clip_height, clip_normal[3], clip_noise, clip_size;
     const char *cloud, *mirror;
@@ -43,6 +43,8 @@ static const cli_option place_options[] = {
      &values.translate_given, false},
     {"pivot", 0, CLI_VECTOR, &values.pivot, -1e12, 1e12, "X,Y,Z",
      "the point that scale, mirror and rotate leave in place [0,0,0]", &values.pivot_given, false},
+    {"leave-edits", 0, CLI_INTEGER, &values.leave_edits, 0, 1e9, "N",
+     "of a scene: leave the edits of its first N clouds to whoever shows them [0]", NULL, true},
     {0}};
 
 static const cli_option rework_options[] = {
@@ -401,6 +403,7 @@ int main(int argc, char **argv)
     cli_common common;
     prepare_medium_options();
     cli_parse(&program, argc, argv, &common);
+    cli_scene_leave_edits((size_t)values.leave_edits);
     check_command();
     cli_save_check(&common);
     if (cli_save_wanted() && !strcmp(common.output, "-"))

@@ -96,7 +96,8 @@ bool render_opaque_ground(double *height, float albedo[3])
 shape_opaque *render_opaque_read(const cli_input *input)
 {
     shape_error error;
-    bool in_scene = input->scene && input->scene->mesh_count;
+    const shape_scene *scene = input->scene;
+    bool in_scene = scene && (scene->mesh_count || scene->ground_given);
     if (colours.count > meshes.count)
         cli_wrong("--mesh-colour: there are more colours than meshes");
     if (cli_given("ground-colour") && !ground_given)
@@ -116,7 +117,14 @@ shape_opaque *render_opaque_read(const cli_input *input)
     shape_scene_destroy(own);
     double height;
     float albedo[3];
-    if (render_opaque_ground(&height, albedo))
+    bool flat = render_opaque_ground(&height, albedo);
+    if (!flat && scene && scene->ground_given) {
+        flat = true;
+        height = scene->ground;
+        for (int c = 0; c < 3; c++)
+            albedo[c] = (float)scene->ground_albedo[c];
+    }
+    if (flat)
         cli_check(shape_opaque_add_ground(opaque, height, albedo, &error), &error);
     cli_check(shape_opaque_finish(opaque, &error), &error);
     return opaque;
@@ -124,8 +132,6 @@ shape_opaque *render_opaque_read(const cli_input *input)
 
 void render_opaque_save_check(void)
 {
-    if (ground_given)
-        cli_wrong("--save-scene --ground: a scene holds no ground (leave one of them out)");
     for (int i = 0; i < meshes.count; i++)
         if (!strcmp(meshes.text[i], "-"))
             cli_wrong("--save-scene: a scene cannot name standard input (name the mesh's file)");
@@ -136,5 +142,10 @@ void render_opaque_save(shape_scene *scene)
     for (int i = 0; i < meshes.count; i++) {
         add_to_scene(scene, i);
         scene->meshes[scene->mesh_count - 1].file = cli_save_name(meshes.text[i]);
+    }
+    if (ground_given) {
+        scene->ground_given = true;
+        scene->ground = ground;
+        memcpy(scene->ground_albedo, ground_colour, sizeof ground_colour);
     }
 }

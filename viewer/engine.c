@@ -124,15 +124,15 @@ shape_status view_engine_draw(view_engine *e, const view_state *state, int width
 
 void view_engine_show(const view_engine *e, const view_state *state, int width, int height)
 {
-    switch (state->heat) {
-    case VIEW_HEAT_NONE:
+    static const struct {
+        shape_gl_heat kind;
+        float full;
+    } maps[VIEW_HEATS] = {[VIEW_HEAT_STEPS] = {SHAPE_GL_HEAT_STEPS, 64},
+                          [VIEW_HEAT_FETCHES] = {SHAPE_GL_HEAT_FETCHES, 128},
+                          [VIEW_HEAT_CANDIDATES] = {SHAPE_GL_HEAT_CANDIDATES, 32},
+                          [VIEW_HEAT_DEPTH] = {SHAPE_GL_HEAT_DEPTH, 5}};
+    if (state->heat == VIEW_HEAT_NONE)
         shape_gl_show(e->gl, state->exposure, width, height);
-        break;
-    case VIEW_HEAT_STEPS:
-        shape_gl_show_work(e->gl, false, 64, width, height);
-        break;
-    case VIEW_HEAT_FETCHES:
-        shape_gl_show_work(e->gl, true, 128, width, height);
-        break;
-    }
+    else
+        shape_gl_show_heat(e->gl, maps[state->heat].kind, maps[state->heat].full, width, height);
 }

@@ -68,7 +68,8 @@ view_opened view_open(const char *path, const view_generator *generator)
         input->set = cli_scene_make(input->scene, path);
         opened.scene = true;
     } else {
-        if (view_source_decode(path, bytes, input->size, &own, &contents, mistakes, sizeof mistakes, &error))
+        if (view_source_decode(path, bytes, input->size, &own, NULL, &contents, mistakes, sizeof mistakes,
+                               &error))
             fail_lines(mistakes);
         input->set = contents.set;
         opened.used = contents.used;

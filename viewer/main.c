@@ -12,13 +12,15 @@
 #include "cli_volume.h"
 #include "shape/file.h"
 #include "render_opaque.h"
+#include "scene_file.h"
 #include "setting.h"
 #include "shape/image.h"
+#include "state_scene.h"
 #include "view.h"
 
 static bool headless, paper_lod, flight;
 static int method, maker = -1;
-static const char *const makers[] = {"neph-gauss", "neph-meta"};
+static const char *const makers[] = {"neph-gauss", "neph-meta", "neph-layer"};
 static int64_t bench_frames, largest, samples = 32, light_grid = 48;
 static const char *shader_folder, *morph_path;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
@@ -38,8 +40,8 @@ static const cli_option view_options[] = {
      "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
      "[off]",
      &error_given, true},
-    {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta",
-     "no IN: what neph-gauss or neph-meta makes, whose options are in the panel [IN]", NULL, true},
+    {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta|layer",
+     "no IN: what neph-gauss, neph-meta or neph-layer makes, whose options are in the panel [IN]", NULL, true},
     {"split", 0, CLI_NUMBER, &split_share, 0, 1, "S",
      "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
@@ -282,10 +284,10 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     shape_error error;
     shape_gl_context *context;
     shape_gl_renderer *renderer;
-    view_course_view(&job->course, job->time, &job->view); /* so that --save-scene keeps what was drawn */
-    view_course_light(&job->course, job->time, &job->light);
-    const shape_view view = job->view;
-    const shape_light light = job->light;
+    shape_view view = job->view;
+    shape_light light = job->light;
+    view_course_view(&job->course, job->time, &view);
+    view_course_light(&job->course, job->time, &light);
     cli_check(shape_gl_context_create(&context, &error), &error);
     if (job->other_set) {
         unsigned char *bytes;
@@ -307,7 +309,8 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     if (bench_given) {
         bench(job, renderer, started, common);
     } else {
-        const view_plan plan = {job->samples, job->largest, job->alpha, cli_progress};
+        const view_plan plan = {
+            .samples = job->samples, .largest = job->largest, .alpha = job->alpha, .progress = cli_progress};
         unsigned char *bytes;
         size_t size;
         cli_check(view_encode_drawn(renderer, &view, &plan, common->output, &bytes, &size, &error), &error);
@@ -323,8 +326,6 @@ static void check_second(const cli_common *common)
 {
     if (bench_given || frames_given || error_given || morph_path)
         cli_wrong("\"%s\": --bench, --frames, --error and --morph take one file", common->arguments[1]);
-    if (cli_save_wanted())
-        cli_wrong("--save-scene: a scene of two files to compare is no scene (open one of them)");
     if (!strcmp(common->arguments[0], "-") && !strcmp(common->arguments[1], "-"))
         cli_wrong("- - : standard input is one file");
 }
@@ -439,19 +440,111 @@ static void take_opened(view_job *job, const view_opened *opened)
     job->scene = opened->scene || opened->volume;
     job->volume_file = opened->volume;
     job->generator = opened->used;
-    if (job->generator.which >= 0 && cli_save_wanted())
-        cli_wrong("--save-scene of what a generator makes is the generator's (%s --save-scene FILE)",
-                  view_generator_program(&job->generator));
+}
+
+/* Whether the command line says what a scene's "view" calls so; --split says where the line stands. */
+static bool is_said(const char *name)
+{
+    return cli_given(strcmp(name, "divider") ? name : "split");
+}
+
+/* What the scene's "view" says goes for what the command line does not say. */
+static void take_scene(view_job *job, const shape_scene *scene)
+{
+    shape_error error;
+    view_state *s = job->state;
+    if (!scene)
+        return;
+    if (view_state_load_view(s, scene, is_said, &error))
+        cli_fail("%s: %s", job->path, error.text);
+    cli_picture_use_scene(scene);
+    if (cli_picture_values.day_given && !day_given) {
+        job->course.day_runs = s->course.day_runs = true;
+        s->course.day = cli_picture_values.day;
+    }
+    cli_picture_values.day_given = false; /* the course lights by it */
+    job->course = s->course;
+    job->time = s->time;
+    job->samples = s->samples;
+    job->options.light.resolution = s->light_grid;
+    job->options.method = (shape_gl_method)s->method;
+    job->divider = s->divider;
+}
+
+/* The same the other way round: a window's state, but for clouds, camera and light. */
+static void begin_state(view_job *job)
+{
+    view_state *s = job->state = calloc(1, sizeof *s);
+    if (!s)
+        cli_fail("not enough memory");
+    s->course = job->course;
+    s->time = job->time;
+    s->method = (int)job->options.method;
+    s->other_method = s->method == SHAPE_GL_EXACT ? SHAPE_GL_DEFAULT : SHAPE_GL_EXACT;
+    s->samples = job->samples;
+    s->light_grid = job->options.light.resolution;
+    s->divider = job->divider;
+}
+
+/* Camera and light, as they are at time 0. */
+static void finish_state(view_job *job)
+{
+    view_state *s = job->state;
+    const shape_dvec3 *eye = &job->view.eye, *target = &job->view.target;
+    memcpy(s->eye, eye, sizeof s->eye);
+    memcpy(s->target, target, sizeof s->target);
+    s->fov = job->view.fov;
+    s->exposure = job->view.exposure;
+    memcpy(s->sun, cli_picture_values.sun, sizeof s->sun);
+    memcpy(s->sun_irradiance, job->light.sun_irradiance, sizeof s->sun_irradiance);
+    s->sky = job->light.sky;
+    memcpy(s->sky_radiance, job->light.sky_radiance, sizeof s->sky_radiance);
+    s->generator = job->generator;
+}
+
+/* --save-scene: what was shown, by the state of the window or of the picture. */
+static void save_scene(const view_job *job)
+{
+    shape_error error;
+    char *text;
+    size_t size;
+    bool outside;
+    if (!cli_save_wanted())
+        return;
+    const view_scene_parts parts = {.state = job->state,
+                                    .made = job->set,
+                                    .scene = job->scene_read,
+                                    .path = job->path,
+                                    .volume = job->volume_file,
+                                    .more = &job->more,
+                                    .other = job->other_path,
+                                    .size = {job->view.width, job->view.height}};
+    cli_check(view_scene_text(&parts, cli_save_path(), &text, &size, &outside, &error), &error);
+    cli_check(shape_file_write(cli_save_path(), text, size, &error), &error);
+    free(text);
+    if (outside)
+        cli_say("note: %s names files outside its folder, and can be opened with --allow-outside only",
+                cli_save_path());
 }
 
 /* Of a scene, it is known only now whether there are meshes. */
 static void check_opaque(const view_job *job)
 {
-    if (!job->opaque || method < SHAPE_GL_PAPER)
+    if (!job->opaque || job->options.method < SHAPE_GL_PAPER)
         return;
     if (render_opaque_given())
         cli_wrong("--mesh, --ground: the methods of 2018 have no opaque things (choose default or exact)");
-    cli_say("note: meshes of the scene are not shown by --method %s", method_names[method]);
+    cli_say("note: meshes of the scene are not shown by --method %s", method_names[job->options.method]);
+}
+
+/* The file that a scene is compared with, where the command line names none and one picture is not wanted by itself. */
+static char *find_compared(view_job *job, const shape_scene *scene)
+{
+    if (!scene || !scene->compare || job->other_path || bench_given || frames_given || error_given || morph_path)
+        return NULL;
+    char *path = cli_scene_file(job->path, scene->compare);
+    job->other_path = path;
+    return path;
 }
 
 int main(int argc, char **argv)
@@ -465,23 +558,27 @@ int main(int argc, char **argv)
     view_job job = {0};
     shape_set *turned = NULL;
     shape_morph *morph = NULL;
+    char *compared;
     check_command(&common, &frames);
     plan(&job, &common);
+    begin_state(&job);
+    if (!headless && !bench_given && !frames_given)
+        cli_scene_leave_edits(VIEW_CLOUDS_MAX); /* the panel has them */
     cli_save_check(&common);
     if (cli_save_wanted())
         render_opaque_save_check();
     view_opened opened = view_open(job.path, &job.generator), other = {0};
     take_opened(&job, &opened);
-    if (common.argument_count > 1) {
+    take_scene(&job, opened.input.scene);
+    compared = find_compared(&job, opened.input.scene);
+    if (job.other_path) {
         view_generator none = view_generator_none(job.seed);
-        other = view_open(common.arguments[1], &none);
+        other = view_open(job.other_path, &none);
         job.other_set = other.input.set;
         job.other_watched = strcmp(job.other_path, "-") && !other.volume;
     }
     if (!opened.volume && !other.volume)
         cli_refuse_volume_options();
-    if (opened.input.scene)
-        cli_picture_use_scene(opened.input.scene);
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     job.opaque = render_opaque_read(&opened.input);
@@ -492,7 +589,7 @@ int main(int argc, char **argv)
     job.scene_read = opened.input.scene;
     check_opaque(&job);
     cli_picture_apply(job.set, &job.view, &job.light);
-    memcpy(job.sun, cli_picture_values.sun, sizeof job.sun);
+    finish_state(&job);
     if (morph_path) {
         view_generator none = view_generator_none(job.seed);
         turned = view_open_source(morph_path, &none);
@@ -506,12 +603,15 @@ int main(int argc, char **argv)
         job.load_ms = now_ms() - started;
         draw_headless(&job, started, &common);
     } else {
-        cli_check(view_window(&job, &error), &error);
+        cli_check(view_window(&job, save_scene, &error), &error);
     }
     view_job_free(&job);
     shape_morph_destroy(morph);
     shape_set_destroy(turned);
-    cli_picture_save_scene(&opened.input, &job.view, &job.light, render_opaque_save);
+    if (headless || bench_given || frames_given)
+        save_scene(&job);
+    free(job.state);
+    free(compared);
     shape_opaque_destroy(job.opaque);
     shape_scene_destroy(list);
     cli_input_free(&opened.input);

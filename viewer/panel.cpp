@@ -21,8 +21,9 @@ struct panel_memory {
     bool all_clouds = true;
     int shot_size[2] = {0, 0}; // 0: as the window is
     bool shot_alpha = false;
-    char other[VIEW_PATH_MAX] = ""; // as it is being typed
-    ImVec4 covered[2] = {};         // by the panel and by the help: left, top, right, bottom
+    bool shot_exr = false;
+    char other[VIEW_PATH_MAX] = "", file[VIEW_PATH_MAX] = ""; // as they are being typed
+    ImVec4 covered[3] = {}; // by the panel, the help, the work under way: left, top, right, bottom
 };
 panel_memory memory;
 
@@ -97,6 +98,32 @@ void turn_group(const char *group, const view_panel_input &in, int cloud)
 bool choose(const char *name, int *value, const char *words)
 {
     return ImGui::Combo(name, value, words);
+}
+
+// A value that is no knob: what it is and its range, and a small x that puts it back to the file's.
+void explain_value(const char *text, void *value, const void *start, size_t size)
+{
+    bool reset = ImGui::IsItemClicked(ImGuiMouseButton_Right);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s\nCtrl+click to type, right click to reset", text);
+    if (!std::memcmp(value, start, size))
+        return;
+    ImGui::SameLine();
+    ImGui::PushID(value);
+    reset = ImGui::SmallButton("x") || reset;
+    ImGui::PopID();
+    if (reset)
+        std::memcpy(value, start, size);
+}
+
+// Three numbers with a unit.
+void turn_vector(const char *name, const char *text, double value[3], const double start[3], double limit)
+{
+    double low = -limit;
+    float speed = static_cast<float>(limit * 1e-4);
+    ImGui::DragScalarN(name, ImGuiDataType_Double, value, 3, speed, &low, &limit, "%.3g",
+                       ImGuiSliderFlags_AlwaysClamp);
+    explain_value(text, value, start, 3 * sizeof *value);
 }
 
 // Where the window that is being drawn stands.
@@ -222,7 +249,11 @@ void draw_cloud(const view_panel_input &in)
         turn_group("Field", in, cloud);
     if (section("Medium", true)) {
         int phase = static_cast<int>(c.medium.phase);
-        if (choose("phase", &phase, "hg\0isotropic\0rayleigh\0mie\0two-lobe\0"))
+        const int was = phase;
+        choose("phase", &phase, "hg\0isotropic\0rayleigh\0mie\0two-lobe\0");
+        int start = cloud < in.base->cloud_count ? static_cast<int>(in.base->clouds[cloud].medium.phase) : phase;
+        explain_value("phase function", &phase, &start, sizeof phase);
+        if (phase != was)
             for (int i = 0; i < in.state->cloud_count; i++)
                 if (i == cloud || memory.all_clouds)
                     in.state->clouds[i].medium.phase = static_cast<shape_phase_kind>(phase);
@@ -230,6 +261,8 @@ void draw_cloud(const view_panel_input &in)
     }
     if (section("Place")) {
         ImGui::Checkbox("visible", &c.visible);
+        if (cloud < in.base->cloud_count)
+            explain_value("whether the cloud is there", &c.visible, &in.base->clouds[cloud].visible, sizeof c.visible);
         turn_group("Place", in, cloud);
     }
 }
@@ -239,14 +272,23 @@ void draw_light(const view_panel_input &in)
     view_state &s = *in.state;
     if (!section("Sun and sky", true))
         return;
+    const view_state &start = *in.base;
     ImGui::Checkbox("by the time of day", &s.course.day_runs);
+    explain_value("the sun goes by hour, latitude and declination", &s.course.day_runs, &start.course.day_runs,
+                  sizeof s.course.day_runs);
     turn_group(s.course.day_runs ? "Day" : "Sun", in, 0);
     ImGui::DragFloat3("irradiance", s.sun_irradiance, 0.02f, 0, 100, "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    explain_value("of the sun, on a plane that faces it: red, green, blue, 0 to 100 (pi: a white surface is 1)",
+                  s.sun_irradiance, start.sun_irradiance, sizeof s.sun_irradiance);
     int sky = static_cast<int>(s.sky);
-    if (choose("sky", &sky, "none\0constant\0clear\0"))
-        s.sky = static_cast<shape_sky_kind>(sky);
-    if (s.sky == SHAPE_SKY_CONSTANT)
+    const int sky_start = static_cast<int>(start.sky);
+    choose("sky", &sky, "none\0constant\0clear\0");
+    explain_value("none, one radiance, or a clear sky", &sky, &sky_start, sizeof sky);
+    s.sky = static_cast<shape_sky_kind>(sky);
+    if (s.sky == SHAPE_SKY_CONSTANT) {
         ImGui::ColorEdit3("radiance", s.sky_radiance, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+        explain_value("of the sky: red, green, blue", s.sky_radiance, start.sky_radiance, sizeof s.sky_radiance);
+    }
 }
 
 // Of a split picture: by which method, and of which file.
@@ -272,13 +314,15 @@ void draw_camera(const view_panel_input &in, view_panel_wish &wish)
     view_state &s = *in.state;
     static const char methods[] = "default\0exact\0paper\0paper-ndt\0";
     choose("method", &s.method, methods);
+    explain_value("how the picture is drawn; the last two for comparison only", &s.method, &in.base->method,
+                  sizeof s.method);
     ImGui::Checkbox("split (X)", &s.split);
     if (s.split)
         draw_right_half(in, wish, methods);
     turn_group("Camera", in, 0);
     turn_group("Quality", in, 0);
-    ImGui::InputScalarN("eye", ImGuiDataType_Double, s.eye, 3, nullptr, nullptr, "%.4g");
-    ImGui::InputScalarN("target", ImGuiDataType_Double, s.target, 3, nullptr, nullptr, "%.4g");
+    ImGui::InputScalarN("eye, m", ImGuiDataType_Double, s.eye, 3, nullptr, nullptr, "%.4g");
+    ImGui::InputScalarN("target, m", ImGuiDataType_Double, s.target, 3, nullptr, nullptr, "%.4g");
     wish.home = ImGui::SmallButton("first view (Home)");
 }
 
@@ -288,9 +332,52 @@ void draw_time(const view_panel_input &in, view_panel_wish &wish)
         return;
     turn_group("Time", in, 0);
     double *wind = in.state->course.motion.wind, *drift = in.state->course.motion.drift;
-    ImGui::InputScalarN("wind m/s", ImGuiDataType_Double, wind, 3, nullptr, nullptr, "%.3g");
-    ImGui::InputScalarN("drift m/s", ImGuiDataType_Double, drift, 3, nullptr, nullptr, "%.3g");
+    const shape_motion &start = in.base->course.motion;
+    turn_vector("wind, m/s", "carries the clouds with their noise: x (east), y (up), z (south), -1000 to 1000", wind,
+                start.wind, 1000);
+    turn_vector("drift, m/s", "moves the noise through the clouds: x, y, z, -1000 to 1000", drift, start.drift, 1000);
     wish.play = ImGui::SmallButton(in.playing ? "stop (Space)" : "play (Space)");
+}
+
+// The passes of the last pictures, one on the other.
+void draw_times(const view_panel_input &in)
+{
+    static const char *const names[VIEW_PASSES] = {"set", "light", "bake", "draw"};
+    static const ImU32 colours[VIEW_PASSES] = {IM_COL32(190, 120, 220, 255), IM_COL32(250, 190, 70, 255),
+                                               IM_COL32(90, 200, 150, 255), IM_COL32(90, 150, 250, 255)};
+    constexpr float wide = width - 30, high = 60;
+    ImVec2 at = ImGui::GetCursorScreenPos();
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    float most = 1;
+    for (int i = 0; i < VIEW_TIMES; i++) {
+        float sum = 0;
+        for (int pass = 0; pass < VIEW_PASSES; pass++)
+            sum += in.times[pass][i];
+        most = sum > most ? sum : most;
+    }
+    list->AddRectFilled(at, ImVec2(at.x + wide, at.y + high), IM_COL32(30, 34, 42, 255));
+    for (int i = 0; i < VIEW_TIMES; i++) {
+        float x = at.x + wide * static_cast<float>(i) / VIEW_TIMES, y = at.y + high;
+        for (int pass = 0; pass < VIEW_PASSES; pass++) {
+            float top = y - high * in.times[pass][i] / most;
+            if (top < y)
+                list->AddRectFilled(ImVec2(x, top), ImVec2(x + wide / VIEW_TIMES, y), colours[pass]);
+            y = top;
+        }
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f ms", static_cast<double>(most));
+    list->AddText(ImVec2(at.x + 4, at.y + 2), IM_COL32_WHITE, text);
+    ImGui::Dummy(ImVec2(wide, high));
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("milliseconds of each of the last %d pictures, by pass", VIEW_TIMES);
+    const double ms[VIEW_PASSES] = {in.volume_ms, in.light_ms, in.bake_ms, in.draw_ms};
+    for (int pass = 0; pass < VIEW_PASSES; pass++) {
+        if (pass)
+            ImGui::SameLine();
+        ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(colours[pass]), "%s %.0f", names[pass], ms[pass]);
+    }
+    ImGui::TextDisabled("file read in %.0f ms; window: at most %.0f ms", in.read_ms, in.longest_ms);
 }
 
 void draw_judging(const view_panel_input &in)
@@ -299,27 +386,35 @@ void draw_judging(const view_panel_input &in)
         return;
     view_state &s = *in.state;
     ImGui::Checkbox("boxes (B)", &s.boxes);
-    ImGui::SameLine();
-    ImGui::Checkbox("primitives (P)", &s.outlines);
-    int heat = static_cast<int>(s.heat);
-    if (choose("heat (T)", &heat, "none\0steps, white at 64\0fetches, white at 128\0"))
-        s.heat = static_cast<view_heat>(heat);
+    choose("primitives (P)", &s.outlines, "none\0as wires\0shaded\0");
+    choose("heat (T)", &s.heat,
+           "none\0steps, white at 64\0fetches, white at 128\0candidates, white at 32\0optical depth, white at 5\0");
+    if (s.heat == VIEW_HEAT_CANDIDATES && s.method == 0)
+        ImGui::TextDisabled("the default method looks at voxels: none");
     ImGui::Checkbox("difference from the reference (R)", &s.difference);
-    ImGui::PlotHistogram("##times", in.times, VIEW_TIMES, 0, "ms a picture", 0, FLT_MAX,
-                         ImVec2(width - 30, 50));
-    ImGui::Text("read %.0f, set %.0f, light %.0f, bake %.0f, draw %.0f ms", in.read_ms, in.volume_ms,
-                in.light_ms, in.bake_ms, in.draw_ms);
+    draw_times(in);
 }
 
 void draw_files(view_panel_wish &wish)
 {
-    if (!section("Pictures and commands"))
+    if (!section("Scenes and pictures"))
         return;
-    ImGui::InputInt2("size", memory.shot_size);
+    ImGui::InputTextWithHint("file", "a new name", memory.file, sizeof memory.file);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("a scene to save, or what is to be opened: a scene, a .neph, a grammar, a mesh,\n"
+                          "a picture that was written here; one can be dropped on the window, too");
+    wish.save = ImGui::Button("save scene (Ctrl+S)");
+    ImGui::SameLine();
+    wish.open_file = ImGui::Button("open") && memory.file[0];
+    std::snprintf(wish.file, sizeof wish.file, "%s", memory.file);
+    ImGui::InputInt2("size, pixels", memory.shot_size);
     for (int &side : memory.shot_size)
         side = side < 0 ? 0 : side > 16384 ? 16384 : side;
-    ImGui::TextDisabled("0, 0: as the window is");
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("of screenshots, to 16384; 0, 0: as the window is");
     ImGui::Checkbox("alpha, no sky", &memory.shot_alpha);
+    ImGui::SameLine();
+    ImGui::Checkbox("EXR", &memory.shot_exr);
     wish.shoot = ImGui::Button("screenshot (F12)");
     wish.copy = ImGui::Button("copy the commands that make this");
 }
@@ -362,16 +457,18 @@ void draw_help(const ImVec2 &screen)
         {"+ -", "exposure"},
         {"Tab", "panel"},
         {"X", "two methods or files, split; drag the line"},
-        {"B, P", "boxes, primitives as wires"},
-        {"T", "steps, then fetches a pixel as heat"},
+        {"B, P", "boxes; primitives as wires, then shaded"},
+        {"T", "heat: steps, fetches, candidates, depth"},
         {"R", "difference from the reference: red brighter, blue darker"},
         {"Space", "time runs, stops"},
         {"Ctrl+Z", "undo; Ctrl+Shift+Z: redo"},
         {"Ctrl+C", "copy the commands that make what is seen"},
+        {"Ctrl+S", "save a scene, into this folder"},
         {"F12", "screenshot, into this folder"},
+        {"drop a file", "open it"},
         {"Ctrl+click", "type a slider's value; right click: reset it"},
         {"H, F1", "this help"},
-        {"Esc", "quit"}};
+        {"Esc", "break off what takes long; else quit"}};
     ImGui::SetNextWindowPos(ImVec2(screen.x / 2, screen.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::Begin("Keys and mouse", nullptr,
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
@@ -381,6 +478,27 @@ void draw_help(const ImVec2 &screen)
         ImGui::TextUnformatted(row[1]);
     }
     memory.covered[1] = window_box();
+    ImGui::End();
+}
+
+// What takes long, how far it is, and a way to end it; above the notes.
+void draw_work(const view_panel_input &in, view_panel_wish &wish, const ImVec2 &screen)
+{
+    if (!in.work)
+        return;
+    ImGui::SetNextWindowPos(ImVec2(screen.x / 2, screen.y - 70), ImGuiCond_Always, ImVec2(0.5f, 1));
+    ImGui::Begin("##work", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoFocusOnAppearing);
+    ImGui::TextUnformatted(in.work);
+    float share = static_cast<float>(in.work_done);
+    // Where the share is not known, a bar that goes round shows that the window is awake.
+    if (in.work_done < 0)
+        share = static_cast<float>(std::fmod(ImGui::GetTime() * 0.5, 1.0));
+    ImGui::ProgressBar(share, ImVec2(160, 0), in.work_done < 0 ? "" : nullptr);
+    ImGui::SameLine();
+    wish.cancel = ImGui::Button("cancel (Esc)");
+    memory.covered[2] = window_box();
     ImGui::End();
 }
 
@@ -398,19 +516,21 @@ float draw_note(const char *text, ImVec2 at, float most, ImU32 colour)
 void draw_notes(const view_panel_input &in, const ImVec2 &screen)
 {
     char status[256];
-    float y = screen.y - 6, most = screen.x - 24;
+    float y = screen.y - 6;
+    // Beside the panel where there is room, so that they hide none of it.
+    float left = in.open && screen.x >= 2 * width ? width + 16 : 6, most = screen.x - left - 18;
     if (in.open) {
         int samples = in.samples < in.state->samples ? in.samples : in.state->samples;
         std::snprintf(status, sizeof status, "%d/%d samples  %.0f ms  %zu primitives  %s", samples,
                       in.state->samples, in.draw_ms, in.primitives, in.doing);
-        y = draw_note(status, ImVec2(6, y), most, IM_COL32(220, 220, 220, 255));
+        y = draw_note(status, ImVec2(6, y), screen.x - 24, IM_COL32(220, 220, 220, 255));
     }
     if (in.difference[0])
-        y = draw_note(in.difference, ImVec2(6, y), most, IM_COL32(220, 200, 160, 255));
+        y = draw_note(in.difference, ImVec2(left, y), most, IM_COL32(220, 200, 160, 255));
     if (in.said[0])
-        y = draw_note(in.said, ImVec2(6, y), most, IM_COL32(170, 230, 170, 255));
+        y = draw_note(in.said, ImVec2(left, y), most, IM_COL32(170, 230, 170, 255));
     if (in.error[0])
-        draw_note(in.error, ImVec2(6, y), most, IM_COL32(255, 140, 120, 255));
+        draw_note(in.error, ImVec2(left, y), most, IM_COL32(255, 140, 120, 255));
 }
 
 void draw_wires(const view_panel_input &in, const ImVec2 &screen)
@@ -522,18 +642,21 @@ view_panel_wish view_panel_draw(const view_panel_input *input)
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     ImVec2 screen = ImGui::GetIO().DisplaySize;
-    memory.covered[0] = memory.covered[1] = ImVec4(0, 0, 0, 0);
+    for (ImVec4 &box : memory.covered)
+        box = ImVec4(0, 0, 0, 0);
     draw_picture(*input, screen);
     if (input->open)
         draw_panel(*input, wish, screen);
     if (input->help)
         draw_help(screen);
+    draw_work(*input, wish, screen);
     draw_notes(*input, screen);
     ImGui::Render();
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     wish.shoot_size[0] = memory.shot_size[0];
     wish.shoot_size[1] = memory.shot_size[1];
     wish.shoot_alpha = memory.shot_alpha;
+    wish.shoot_exr = memory.shot_exr;
     return wish;
 }
 

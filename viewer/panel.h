@@ -11,6 +11,8 @@ extern "C" {
 
 struct GLFWwindow;
 
+/* What a picture's time goes to: making its clouds, their light, their baked density, drawing. */
+typedef enum view_pass { VIEW_PASS_SET, VIEW_PASS_LIGHT, VIEW_PASS_BAKE, VIEW_PASS_DRAW, VIEW_PASSES } view_pass;
 enum { VIEW_TIMES = 120 };
 
 /* What a frame shows. */
@@ -27,7 +29,10 @@ typedef struct view_panel_input {
     double draw_ms, light_ms, bake_ms, volume_ms, read_ms;
     double steps, fetches; /* a pixel, of the picture */
     size_t primitives, all_clouds;
-    const float *times; /* of the last VIEW_TIMES pictures [ms], the oldest first */
+    const float (*times)[VIEW_TIMES]; /* VIEW_PASSES of them, of the last pictures [ms], the oldest first */
+    const char *work;                 /* what is under way for longer than a moment; NULL: nothing */
+    double work_done;                 /* its share that is done; below 0: not known */
+    double longest_ms;                /* the longest frame of the window so far */
     bool watched, open, help, playing;
     const shape_set *placed; /* for the wires; NULL */
 } view_panel_input;
@@ -35,7 +40,9 @@ typedef struct view_panel_input {
 /* What was wished in a frame. */
 typedef struct view_panel_wish {
     bool undo, redo, home, copy, play;
-    bool shoot, shoot_alpha;
+    bool shoot, shoot_alpha, shoot_exr;
+    bool save, open_file, cancel; /* a scene to file, or a file to show; what is under way to break off */
+    char file[VIEW_PATH_MAX];     /* empty: a name of its own */
     int shoot_size[2];
     bool open_other;
     char other[VIEW_PATH_MAX]; /* what to show in the right half; empty: the same file */

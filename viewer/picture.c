@@ -84,9 +84,11 @@ shape_status view_draw_image(shape_gl_renderer *renderer, const shape_view *view
         for (int k = 0; k < plan->samples && !status; k++) {
             status = shape_gl_draw(renderer, view, k, error);
             shape_gl_finish();
+            double done = (double)(i * plan->samples + k + 1) / ((double)across * down * plan->samples);
             if (plan->progress)
-                plan->progress("drawing",
-                               (double)(i * plan->samples + k + 1) / (across * down * plan->samples));
+                plan->progress("drawing", done);
+            if (!status && plan->go_on && !plan->go_on(plan->context, done))
+                status = shape_error_set(error, SHAPE_ERROR_LIMIT, "broken off");
         }
         if (!status)
             status = read_part(renderer, part, *image, error);
@@ -152,7 +154,8 @@ static shape_status draw_image(const view_job *job, const shape_view *view, cons
     status = shape_gl_load(renderer, job->volume, error);
     if (!status)
         status = shape_gl_light(renderer, light, error);
-    const view_plan plan = {job->samples, job->largest, job->alpha, cli_progress};
+    const view_plan plan = {
+            .samples = job->samples, .largest = job->largest, .alpha = job->alpha, .progress = cli_progress};
     if (!status)
         status = view_draw_image(renderer, view, &plan, image, error);
     shape_gl_destroy(renderer);

@@ -22,7 +22,7 @@ struct view_renderer {
     pthread_mutex_t mutex;
     pthread_cond_t asked;
     /* Under the mutex. */
-    bool stop, fresh, shoot;
+    bool stop, fresh, shoot, cancelled; /* cancelled: the picture file */
     view_request wish;
     view_shown wished;
     view_shot wish_shot;
@@ -366,6 +366,25 @@ static bool adopt(view_renderer *r, const view_request *wish, const view_shown *
     return true;
 }
 
+static void tell_shot(view_renderer *r, double done)
+{
+    pthread_mutex_lock(&r->mutex);
+    r->picture.shot_done = done;
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+}
+
+/* After each part and sample of a picture file. */
+static bool shot_goes_on(void *context, double done)
+{
+    view_renderer *r = context;
+    tell_shot(r, done);
+    pthread_mutex_lock(&r->mutex);
+    bool on = !r->cancelled && !r->stop;
+    pthread_mutex_unlock(&r->mutex);
+    return on;
+}
+
 static void take_shot(view_renderer *r, const view_shot *s)
 {
     shape_error error;
@@ -373,7 +392,9 @@ static void take_shot(view_renderer *r, const view_shot *s)
     shape_gl_options options = r->start.options;
     options.light.opaque = view_things_get(r->shown.things);
     say(r, "screenshot");
-    shape_status status = view_shot_take(s, &r->now.state, r->scene->volume, &options, &error);
+    shape_status status =
+        view_shot_take(s, &r->now.state, r->scene->volume, &options, shot_goes_on, r, &error);
+    tell_shot(r, -1);
     if (status)
         snprintf(text, sizeof text, "screenshot: %.480s", error.text);
     else
@@ -498,18 +519,24 @@ static void *render_thread(void *context)
             shown = r->wished;
             memset(&r->wished, 0, sizeof r->wished);
         }
-        if (shoot)
+        if (shoot) {
             memcpy(wanted, &r->wish_shot, sizeof *wanted);
+            r->wish_shot.scene = NULL;
+        }
         r->fresh = r->shoot = false;
         pthread_mutex_unlock(&r->mutex);
         if (stop) {
             drop_shown(&shown);
+            if (shoot)
+                free(wanted->scene);
             break;
         }
         if (fresh)
             broken = !adopt(r, wish, &shown);
         if (shoot && r->scene)
             take_shot(r, wanted);
+        if (shoot)
+            free(wanted->scene);
         if (!broken && !is_idle(r) && step(r, &error)) {
             tell(r, error.text, true);
             broken = true; /* until the next wish */
@@ -536,6 +563,7 @@ view_renderer *view_renderer_start(const view_render_start *start, shape_error *
     }
     r->start = *start;
     r->picture.doing = "";
+    r->picture.shot_done = -1;
     r->quick.quick = r->quick_other.quick = true;
     pthread_mutex_init(&r->mutex, NULL);
     pthread_cond_init(&r->asked, NULL);
@@ -557,6 +585,7 @@ void view_renderer_stop(view_renderer *r)
     pthread_mutex_unlock(&r->mutex);
     pthread_join(r->thread, NULL);
     drop_shown(&r->wished);
+    free(r->wish_shot.scene);
     free(r->radiance);
     drop_shown(&r->shown);
     view_shared_drop(r->picture.placed);
@@ -581,10 +610,21 @@ void view_renderer_ask(view_renderer *r, const view_request *request, const view
     pthread_mutex_unlock(&r->mutex);
 }
 
-void view_renderer_shoot(view_renderer *r, const char *path, int width, int height, bool alpha,
-                         const char *comment)
+void view_renderer_cancel(view_renderer *r)
 {
     pthread_mutex_lock(&r->mutex);
+    r->cancelled = true;
+    pthread_mutex_unlock(&r->mutex);
+}
+
+void view_renderer_shoot(view_renderer *r, const char *path, int width, int height, bool alpha,
+                         const char *comment, char *scene)
+{
+    pthread_mutex_lock(&r->mutex);
+    free(r->wish_shot.scene);
+    r->wish_shot.scene = scene;
+    r->cancelled = false;
+    r->picture.shot_done = 0;
     snprintf(r->wish_shot.path, sizeof r->wish_shot.path, "%s", path);
     snprintf(r->wish_shot.comment, sizeof r->wish_shot.comment, "%s", comment);
     r->wish_shot.width = width;

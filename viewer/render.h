@@ -31,6 +31,7 @@ typedef struct view_picture {
     int samples;          /* drawn so far, of the state's */
     bool done;            /* nothing is left to do */
     const char *doing;    /* what the thread is at: static text */
+    double shot_done;     /* share of a picture file that is done; below 0: none is being made */
     shape_gl_costs costs; /* of the picture's renderer */
     double draw_ms, volume_ms;
     uint64_t number;  /* grows with each picture */
@@ -60,9 +61,12 @@ typedef struct view_shown {
 
 /* Asks for a picture; the newest wish counts. What is shown is kept. */
 void view_renderer_ask(view_renderer *renderer, const view_request *request, const view_shown *shown);
-/* Asks for a picture file besides: width x height, of all samples. `comment` is kept in the file. */
+/* Asks for a picture file besides: width x height, of all samples. `comment` and `scene` (NULL: none; taken over, by free)
+ * are kept in the file. */
 void view_renderer_shoot(view_renderer *renderer, const char *path, int width, int height, bool alpha,
-                         const char *comment);
+                         const char *comment, char *scene);
+/* Breaks off the picture file that is being made, if one is. */
+void view_renderer_cancel(view_renderer *renderer);
 /* Where the state asks for the difference and the picture of that content is done: its radiance in the smaller size of
  * reference.h, which the caller frees. NULL else. Once a content. */
 float *view_renderer_take_radiance(view_renderer *renderer, uint64_t content);

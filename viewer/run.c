@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,7 @@ enum { MAX_OUTPUT = 0x40000000 };
 struct view_run {
     pthread_mutex_t mutex;
     pid_t child; /* 0: none; under the mutex */
+    atomic_bool cancelled;
 };
 
 view_run *view_run_create(void)
@@ -41,9 +43,20 @@ void view_run_destroy(view_run *run)
 void view_run_cancel(view_run *run)
 {
     pthread_mutex_lock(&run->mutex);
+    atomic_store(&run->cancelled, true);
     if (run->child > 0)
         kill(run->child, SIGKILL); /* what it has written is thrown away */
     pthread_mutex_unlock(&run->mutex);
+}
+
+void view_run_begin(view_run *run)
+{
+    atomic_store(&run->cancelled, false);
+}
+
+bool view_run_is_cancelled(view_run *run)
+{
+    return run && atomic_load(&run->cancelled);
 }
 
 static void set_child(view_run *run, pid_t child)
@@ -52,6 +65,8 @@ static void set_child(view_run *run, pid_t child)
         return;
     pthread_mutex_lock(&run->mutex);
     run->child = child;
+    if (child > 0 && atomic_load(&run->cancelled))
+        kill(child, SIGKILL); /* it was cancelled before it had begun */
     pthread_mutex_unlock(&run->mutex);
 }
 

@@ -6,8 +6,7 @@
 
 #include "cli_generator.h"
 
-/* neph-layer has settings too, but its table holds no defaults to start from. */
-static const char *const changeable[] = {"neph-gauss", "neph-meta", "neph-lsys", "neph-mesh"};
+static const char *const changeable[] = {"neph-gauss", "neph-meta", "neph-lsys", "neph-mesh", "neph-layer"};
 
 /* Numbers of an option; 0 where the panel has nothing for it. */
 static int count_numbers(cli_kind kind)

@@ -7,14 +7,16 @@
 
 typedef struct view_shot {
     char path[4096], comment[8192]; /* comment: kept in the file as the text "nephele" */
+    char *scene;                    /* kept as SHAPE_SCENE_PICTURE_KEY; NULL: none. The renderer frees it */
     int width, height;
     int largest; /* side of what is drawn at once; 0: what the GPU can */
     bool alpha;
 } view_shot;
 
 /* Draws all samples and writes the file; the format is that of the path's suffix. The volume is that of the state. An
- * OpenGL context is current. */
+ * OpenGL context is current. go_on is told the share of the work that is done, and ends it by false; SHAPE_ERROR_LIMIT. */
 shape_status view_shot_take(const view_shot *shot, const view_state *state, const shape_volume *volume,
-                            const shape_gl_options *options, shape_error *error);
+                            const shape_gl_options *options, shape_progress go_on, void *context,
+                            shape_error *error);
 
 #endif

@@ -11,6 +11,7 @@
 #include "shape/file.h"
 #include "shape/neph.h"
 #include "shape/turtle.h"
+#include "state_scene.h"
 
 enum { MAX_SET_FILE = 0x40000000 };
 
@@ -41,15 +42,41 @@ static void list_mistakes(const char *shown, const shape_mistakes *found, char *
     }
 }
 
+/* A turtle that stops where nobody wants its cloud any more. */
+typedef struct walk {
+    shape_turtle *turtle;
+    view_run *run;
+    unsigned steps;
+} walk;
+
+static shape_status visit(void *user, const shape_symbol *symbol, shape_error *error)
+{
+    walk *w = user;
+    if (++w->steps % 1024 == 0 && view_run_is_cancelled(w->run))
+        return shape_error_set(error, SHAPE_ERROR_LIMIT, "broken off");
+    return shape_turtle_visit(w->turtle, symbol, error);
+}
+
+static shape_status walk_string(const shape_grammar *grammar, const shape_derive_options *options, view_run *run,
+                                shape_primitives *list, shape_derive_counts *counts, shape_error *error)
+{
+    walk w = {.turtle = shape_turtle_create(grammar, options, list, error), .run = run};
+    if (!w.turtle)
+        return SHAPE_ERROR_MEMORY;
+    shape_status status = shape_grammar_derive(grammar, options, visit, &w, counts, error);
+    shape_turtle_destroy(w.turtle);
+    return status;
+}
+
 static shape_status grow(const shape_grammar *grammar, const shape_derive_options *options, const char *path,
-                         const char *shown, shape_set *set, shape_error *error)
+                         const char *shown, view_run *run, shape_set *set, shape_error *error)
 {
     char name[SHAPE_NAME_MAX + 1];
     shape_derive_counts counts;
     cli_bare_name(path, "grammar", name);
     shape_status status = shape_set_add_cloud(set, name, NULL, error);
     if (!status)
-        status = shape_grammar_grow(grammar, options, shape_set_list(set, 0), &counts, error);
+        status = walk_string(grammar, options, run, shape_set_list(set, 0), &counts, error);
     if (!status && !counts.primitives)
         status = shape_error_set(error, SHAPE_ERROR_FORMAT, "%s: the derived string sets no puff", shown);
     if (status)
@@ -86,7 +113,7 @@ static void use_settings(view_generator *used, shape_derive_options *options)
 }
 
 static shape_status derive(const shape_grammar *grammar, const view_generator *generator, const char *path,
-                           const char *shown, view_contents *contents, shape_error *error)
+                           const char *shown, view_run *run, view_contents *contents, shape_error *error)
 {
     shape_derive_options options = shape_derive_defaults(grammar);
     options.seed = generator->seed;
@@ -97,7 +124,7 @@ static shape_status derive(const shape_grammar *grammar, const view_generator *g
     contents->set = shape_set_create(error);
     if (!contents->set)
         return SHAPE_ERROR_MEMORY;
-    shape_status status = grow(grammar, &options, path, shown, contents->set, error);
+    shape_status status = grow(grammar, &options, path, shown, run, contents->set, error);
     if (status) {
         shape_set_destroy(contents->set);
         contents->set = NULL;
@@ -106,8 +133,8 @@ static shape_status derive(const shape_grammar *grammar, const view_generator *g
 }
 
 static shape_status read_grammar(const char *path, const char *shown, const unsigned char *bytes, size_t size,
-                                 const view_generator *generator, view_contents *contents, char *mistakes,
-                                 size_t room, shape_error *error)
+                                 const view_generator *generator, view_run *run, view_contents *contents,
+                                 char *mistakes, size_t room, shape_error *error)
 {
     shape_mistakes *found = malloc(sizeof *found);
     shape_grammar *grammar;
@@ -119,14 +146,14 @@ static shape_status read_grammar(const char *path, const char *shown, const unsi
     free(found);
     if (status)
         return status;
-    status = derive(grammar, generator, path, shown, contents, error);
+    status = derive(grammar, generator, path, shown, run, contents, error);
     shape_grammar_destroy(grammar);
     return status;
 }
 
 shape_status view_source_decode(const char *path, const unsigned char *bytes, size_t size,
-                                const view_generator *generator, view_contents *contents, char *mistakes,
-                                size_t room, shape_error *error)
+                                const view_generator *generator, view_run *run, view_contents *contents,
+                                char *mistakes, size_t room, shape_error *error)
 {
     const char *shown = strcmp(path, "-") ? path : "standard input";
     shape_status status;
@@ -134,7 +161,8 @@ shape_status view_source_decode(const char *path, const unsigned char *bytes, si
     contents->used = view_generator_none(generator->seed);
     mistakes[0] = 0;
     if (is_grammar(path, bytes, size)) {
-        status = read_grammar(path, shown, bytes, size, generator, contents, mistakes, room, error);
+        status = read_grammar(path, shown, bytes, size, generator, run, contents, mistakes, room,
+                              error);
     } else {
         status = shape_neph_decode(bytes, size, &contents->set, error);
         if (status) {
@@ -190,15 +218,20 @@ static shape_status run_generator(const char *path, view_run *run, view_contents
 static shape_status read_scene(const char *path, const unsigned char *bytes, size_t size, view_run *run,
                                view_contents *contents, char *mistakes, size_t room, shape_error *error)
 {
-    char *arguments[] = {(char *)"neph-edit", (char *)"-q", NULL, NULL, NULL, NULL};
-    size_t count = 2, made_size;
+    char left[32], *arguments[] = {(char *)"neph-edit", (char *)"-q", left, NULL, NULL, NULL, NULL};
+    size_t count = 3, made_size;
     unsigned char *made;
     if (cli_outside_allowed())
         arguments[count++] = (char *)"--allow-outside";
     arguments[count++] = (char *)"--";
     arguments[count] = (char *)path;
+    snprintf(left, sizeof left, "--leave-edits=%d", VIEW_CLOUDS_MAX); /* they are the panel's */
     contents->used = view_generator_none(contents->used.seed);
     shape_status status = shape_scene_decode(bytes, size, path, &contents->scene, error);
+    if (!status)
+        status = view_state_check_view(contents->scene, error);
+    if (status) /* the decoder has said where */
+        snprintf(mistakes, room, "%s%s%s", contents->scene ? path : "", contents->scene ? ": " : "", error->text);
     if (!status)
         status = view_run_program(run, arguments, &made, &made_size, mistakes, room, error);
     if (status)
@@ -237,7 +270,7 @@ static shape_status read_any(const char *path, const view_generator *generator, 
     if (shape_scene_is(bytes, size))
         status = read_scene(path, bytes, size, run, contents, mistakes, room, error);
     else
-        status = view_source_decode(path, bytes, size, generator, contents, mistakes, room, error);
+        status = view_source_decode(path, bytes, size, generator, run, contents, mistakes, room, error);
     free(bytes);
     return status;
 }

@@ -51,8 +51,8 @@ shape_status view_source_read(const char *path, const view_generator *generator,
 void view_contents_free(view_contents *contents);
 /* The same of a file's bytes that have been read already, a .neph's or a grammar's. */
 shape_status view_source_decode(const char *path, const unsigned char *bytes, size_t size,
-                                const view_generator *generator, view_contents *contents, char *mistakes,
-                                size_t room, shape_error *error);
+                                const view_generator *generator, view_run *run, view_contents *contents,
+                                char *mistakes, size_t room, shape_error *error);
 
 #ifdef __cplusplus
 }

@@ -58,6 +58,10 @@ void view_state_merge(view_state *state, const view_state *base, const view_stat
         for (int part = 0; part < 2; part++) /* members are of four bytes, or halves of eight */
             for (size_t at = 0; at + 4 <= sizes[part]; at += 4)
                 merge_bytes(mine[part] + at, from[part] + at, to[part] + at, 4);
+        merge_bytes(own.move, b->move, n->move, sizeof own.move);
+        merge_bytes(own.turn, b->turn, n->turn, sizeof own.turn);
+        merge_bytes(&own.scale, &b->scale, &n->scale, sizeof own.scale);
+        merge_bytes(&own.visible, &b->visible, &n->visible, sizeof own.visible);
         memcpy(own.origin, n->origin, sizeof own.origin);
         memcpy(c, &own, sizeof own);
     }
@@ -124,23 +128,44 @@ static void drop_hidden(shape_set *set, const view_state *state)
     set->cloud_count = kept;
 }
 
+static shape_status change_clouds(const view_state *state, shape_set *set, shape_error *error)
+{
+    shape_status status = SHAPE_OK;
+    bool *selected = calloc(set->cloud_count + 1, sizeof *selected);
+    if (!selected)
+        return shape_error_memory(error);
+    for (int i = 0; i < state->cloud_count && (size_t)i < set->cloud_count && !status; i++)
+        status = change_cloud(set, (size_t)i, &state->clouds[i], selected, error);
+    free(selected);
+    if (!status)
+        drop_hidden(set, state);
+    return status;
+}
+
+/* The set with the changes, before anything moves, as neph-edit and a scene's edits make it. */
+static shape_status edited_copy(const view_state *state, const shape_set *set, shape_set **made,
+                                shape_error *error)
+{
+    *made = shape_set_create(error);
+    if (!*made)
+        return SHAPE_ERROR_MEMORY;
+    shape_status status = shape_set_append(*made, set, error);
+    return status ? status : change_clouds(state, *made, error);
+}
+
 shape_status view_state_set(const view_state *state, const shape_set *set, const shape_morph *morph,
                             shape_set **made, shape_error *error)
 {
-    shape_set *moved;
-    shape_status status = view_course_set(&state->course, set, morph, state->time, &moved, error);
-    if (status)
-        return status;
-    bool *selected = calloc(moved->cloud_count + 1, sizeof *selected);
-    if (!selected)
-        status = shape_error_memory(error);
-    for (int i = 0; i < state->cloud_count && (size_t)i < moved->cloud_count && !status; i++)
-        status = change_cloud(moved, (size_t)i, &state->clouds[i], selected, error);
-    free(selected);
-    if (!status) {
-        drop_hidden(moved, state);
+    shape_set *moved = NULL, *edited = NULL;
+    bool before = !morph && shape_motion_is_on(&state->course.motion); /* a morph knows its own clouds alone */
+    shape_status status = before ? edited_copy(state, set, &edited, error) : SHAPE_OK;
+    if (!status)
+        status = view_course_set(&state->course, edited ? edited : set, morph, state->time, &moved, error);
+    if (!status && !before)
+        status = change_clouds(state, moved, error);
+    if (!status)
         status = shape_set_check(moved, error);
-    }
+    shape_set_destroy(edited);
     if (status)
         shape_set_destroy(moved);
     else

@@ -24,7 +24,19 @@ typedef struct view_cloud {
     bool visible;
 } view_cloud;
 
-typedef enum view_heat { VIEW_HEAT_NONE, VIEW_HEAT_STEPS, VIEW_HEAT_FETCHES } view_heat;
+typedef enum view_heat {
+    VIEW_HEAT_NONE,
+    VIEW_HEAT_STEPS,
+    VIEW_HEAT_FETCHES,
+    VIEW_HEAT_CANDIDATES,
+    VIEW_HEAT_DEPTH,
+    VIEW_HEATS
+} view_heat;
+#define VIEW_HEAT_WORDS "none|steps|fetches|candidates|depth"
+
+/* How primitives are shown over the picture. */
+typedef enum view_outline { VIEW_OUTLINE_NONE, VIEW_OUTLINE_WIRES, VIEW_OUTLINE_SHADED, VIEW_OUTLINES } view_outline;
+#define VIEW_OUTLINE_WORDS "none|wires|shaded"
 
 typedef struct view_state {
     double eye[3], target[3]; /* metres; the camera is no part of undo */
@@ -38,9 +50,10 @@ typedef struct view_state {
     double time;              /* seconds */
     int method, other_method; /* shape_gl_method; the second for the right half of a split picture */
     int samples, light_grid;
-    bool split, boxes, outlines; /* outlines: the primitives as wires */
-    float divider;               /* of the split picture, a share of the width */
-    view_heat heat;
+    bool split, boxes;
+    float divider; /* of the split picture, a share of the width */
+    int heat;      /* view_heat */
+    int outlines;  /* view_outline: the primitives */
     bool difference; /* from the reference, as a map */
     view_generator generator;
     int cloud_count; /* of clouds */

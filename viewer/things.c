@@ -68,6 +68,12 @@ static shape_status add_all(shape_opaque *opaque, const shape_scene *scene, cons
         status = add_file(opaque, &more->list->meshes[i], more->list->meshes[i].file, error);
     if (!status && more->has_ground)
         status = shape_opaque_add_ground(opaque, more->height, more->ground_albedo, error);
+    else if (!status && scene && scene->ground_given) {
+        float albedo[3];
+        for (int c = 0; c < 3; c++)
+            albedo[c] = (float)scene->ground_albedo[c];
+        status = shape_opaque_add_ground(opaque, scene->ground, albedo, error);
+    }
     return status ? status : shape_opaque_finish(opaque, error);
 }
 
@@ -75,7 +81,7 @@ shape_status view_things_read(const shape_scene *scene, const char *scene_path, 
                               const view_more_things *more, shape_opaque **opaque, shape_error *error)
 {
     *opaque = NULL;
-    bool any = (scene && scene->mesh_count) || (more->list && more->list->mesh_count) || more->has_ground;
+    bool any = (scene && (scene->mesh_count || scene->ground_given)) || (more->list && more->list->mesh_count) || more->has_ground;
     if (!any)
         return SHAPE_OK;
     shape_opaque *made = shape_opaque_create(error);

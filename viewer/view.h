@@ -7,6 +7,7 @@
 #include "shape/image.h"
 #include "shape_gl.h"
 #include "source.h"
+#include "state.h"
 
 /* What the command line asked for. */
 typedef struct view_job {
@@ -28,6 +29,7 @@ typedef struct view_job {
     const char *other_path;                /* NULL */
     bool other_watched;                    /* it is a file that can be watched */
     view_generator generator;              /* what makes the first file's cloud */
+    view_state *state;                     /* what a window begins with, but for the clouds */
     char opening[1024];                    /* options that belong to the file, as they were given */
     char things[4096];                     /* --mesh and --ground, as they were given */
     bool scene, alpha;
@@ -36,7 +38,6 @@ typedef struct view_job {
     int largest;      /* side of what is drawn at once; 0: what the GPU can */
     double load_ms;
     uint64_t seed; /* as given */
-    double sun[2]; /* azimuth and height, degrees, as given */
 } view_job;
 
 /* input.c: what the command line opens. */
@@ -52,8 +53,9 @@ view_opened view_open(const char *path, const view_generator *generator);
 /* A .neph or a grammar alone. The caller destroys the set. */
 shape_set *view_open_source(const char *path, const view_generator *generator);
 
-/* window.c: opens the window and stays until it is closed. Errors: SHAPE_ERROR_SYSTEM where there is no display. */
-shape_status view_window(view_job *job, shape_error *error);
+/* window.c: opens the window and stays until it is closed; then closed is called with what the window showed last. Errors:
+ * SHAPE_ERROR_SYSTEM where there is no display. */
+shape_status view_window(view_job *job, void (*closed)(const view_job *job), shape_error *error);
 
 /* picture.c: pictures without a window. */
 
@@ -69,6 +71,8 @@ typedef struct view_plan {
     int largest; /* side of what is drawn at once [pixels]; 0: what the GPU can */
     bool alpha;
     void (*progress)(const char *what, double done); /* NULL: none */
+    bool (*go_on)(void *context, double done);       /* false ends the work: SHAPE_ERROR_CANCELLED; NULL: go on */
+    void *context;
 } view_plan;
 
 /* Draws all samples of a picture, in parts where it is larger than the plan's largest. The caller destroys *image. */

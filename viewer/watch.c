@@ -53,6 +53,8 @@ struct view_watch {
     /* Under the mutex. */
     view_generator generator;
     bool asked, stop, fresh, busy;
+    bool dropped, left; /* dropped: nobody waits for what is being read; left: the thread frees all */
+    double busy_since;
     view_news news;
 };
 
@@ -161,8 +163,8 @@ static void add_opened_scene(view_watch *watch)
     size_t size;
     shape_scene *scene = NULL;
     shape_error error;
-    if (shape_file_read(watch->path, SHAPE_SCENE_SIZE_MAX, &bytes, &size, &error))
-        return; /* a larger file is no scene */
+    if (shape_file_read(watch->path, 0x40000000, &bytes, &size, &error))
+        return;
     if (shape_scene_is(bytes, size) && !shape_scene_decode(bytes, size, watch->path, &scene, &error))
         add_named(watch, scene);
     shape_scene_destroy(scene);
@@ -179,13 +181,20 @@ static void read_file(view_watch *watch, double since, bool things)
     memset(&news, 0, sizeof news);
     pthread_mutex_lock(&watch->mutex);
     view_generator generator = watch->generator;
+    if (!watch->busy)
+        watch->busy_since = now_ms();
     watch->busy = true;
+    watch->dropped = false;
+    if (!watch->stop)
+        view_run_begin(watch->run); /* not after a stop, which cancelled for good */
     pthread_mutex_unlock(&watch->mutex);
     view_source_read(watch->path, &generator, watch->run, watch->more, things && watch->more, &news.contents,
                      news.text, sizeof news.text, &error);
     add_named(watch, news.contents.scene);
     pthread_mutex_lock(&watch->mutex);
-    bool outdated = watch->asked || watch->stop; /* and perhaps broken off */
+    bool outdated = watch->asked || watch->stop || watch->dropped; /* and perhaps broken off */
+    if (watch->dropped && !watch->asked)
+        watch->busy = false;
     pthread_mutex_unlock(&watch->mutex);
     if (outdated) {
         view_contents_free(&news.contents);
@@ -298,9 +307,25 @@ static void attend(view_watch *watch, bool asked)
         read_file(watch, now_ms(), things);
 }
 
+static void free_watch(view_watch *watch);
+
+/* Whether it is to end; where nobody waits for that, all is freed. */
+static bool ends(view_watch *watch, bool *asked)
+{
+    pthread_mutex_lock(&watch->mutex);
+    bool stop = watch->stop, left = watch->left;
+    *asked = watch->asked;
+    watch->asked = false;
+    pthread_mutex_unlock(&watch->mutex);
+    if (stop && left)
+        free_watch(watch);
+    return stop;
+}
+
 static void *watch_thread(void *context)
 {
     view_watch *watch = context;
+    bool asked;
     if (is_file(watch))
         add_file(watch, watch->path);
     if (is_file(watch))
@@ -309,11 +334,7 @@ static void *watch_thread(void *context)
         add_file(watch, watch->more->list->meshes[i].file);
     for (;;) {
         wait_for(watch, !watch->file_count ? -1 : watch->notify >= 0 ? 250 : LOOK_MS);
-        pthread_mutex_lock(&watch->mutex);
-        bool stop = watch->stop, asked = watch->asked;
-        watch->asked = false;
-        pthread_mutex_unlock(&watch->mutex);
-        if (stop)
+        if (ends(watch, &asked))
             return NULL;
         attend(watch, asked);
     }
@@ -369,15 +390,40 @@ static void wake_thread(const view_watch *watch)
     (void)written; /* a full pipe wakes as well */
 }
 
+/* The thread may free it as soon as the mutex is let go, so all is done before. */
+static void ask_to_end(view_watch *watch, bool leave)
+{
+    pthread_mutex_lock(&watch->mutex);
+    watch->stop = true;
+    watch->left = leave;
+    view_run_cancel(watch->run);
+    wake_thread(watch);
+    if (leave)
+        pthread_detach(watch->thread);
+    pthread_mutex_unlock(&watch->mutex);
+}
+
+void view_watch_leave(view_watch *watch)
+{
+    if (watch)
+        ask_to_end(watch, true);
+}
+
+void view_watch_cancel(view_watch *watch)
+{
+    pthread_mutex_lock(&watch->mutex);
+    if (watch->busy) {
+        watch->dropped = true;
+        view_run_cancel(watch->run);
+    }
+    pthread_mutex_unlock(&watch->mutex);
+}
+
 void view_watch_stop(view_watch *watch)
 {
     if (!watch)
         return;
-    pthread_mutex_lock(&watch->mutex);
-    watch->stop = true;
-    pthread_mutex_unlock(&watch->mutex);
-    view_run_cancel(watch->run);
-    wake_thread(watch);
+    ask_to_end(watch, false);
     pthread_join(watch->thread, NULL);
     free_watch(watch);
 }
@@ -386,6 +432,8 @@ void view_watch_ask(view_watch *watch, const view_generator *generator)
 {
     pthread_mutex_lock(&watch->mutex);
     watch->generator = *generator;
+    if (!watch->busy)
+        watch->busy_since = now_ms();
     watch->asked = watch->busy = true;
     pthread_mutex_unlock(&watch->mutex);
     view_run_cancel(watch->run); /* what is being made is of older settings */
@@ -409,4 +457,12 @@ bool view_watch_is_busy(view_watch *watch)
     bool busy = watch->busy;
     pthread_mutex_unlock(&watch->mutex);
     return busy;
+}
+
+double view_watch_busy_for(view_watch *watch)
+{
+    pthread_mutex_lock(&watch->mutex);
+    double since = watch->busy ? now_ms() - watch->busy_since : 0;
+    pthread_mutex_unlock(&watch->mutex);
+    return since;
 }

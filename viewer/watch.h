@@ -21,11 +21,17 @@ enum { VIEW_FILES_MAX = 256 }; /* watched at once; of a scene that names more, t
 view_watch *view_watch_start(const char *path, const view_generator *generator, const view_more_things *more,
                              void (*wake)(void), shape_error *error);
 void view_watch_stop(view_watch *watch); /* NULL is allowed */
+/* The same without waiting for the end: the thread frees what is left when it gets there. NULL is allowed. */
+void view_watch_leave(view_watch *watch);
+/* Breaks off the reading that is under way; nothing comes of it. */
+void view_watch_cancel(view_watch *watch);
 /* Makes a generator's cloud anew by other settings, breaking off what is being made; not that of standard input. */
 void view_watch_ask(view_watch *watch, const view_generator *generator);
 /* Takes the newest news; false where there is none since the last time. */
 bool view_watch_take(view_watch *watch, view_news *news);
 /* Whether a reading is under way. */
 bool view_watch_is_busy(view_watch *watch);
+/* For how long it has been, in milliseconds; 0: none is. */
+double view_watch_busy_for(view_watch *watch);
 
 #endif

@@ -10,9 +10,10 @@
 #include <unistd.h>
 
 #include "shape/combine.h"
+#include "state_scene.h"
 #include "window_private.h"
 
-enum { PANEL_WIDTH = 700 }; /* a window narrower than this starts with the panel folded */
+enum { FIRST_FRAMES = 5, PANEL_WIDTH = 700 }; /* a window narrower than this starts with the panel folded */
 
 static double now_ms(void)
 {
@@ -55,26 +56,14 @@ static void begin_state(window_state *w)
 {
     const view_job *job = w->job;
     view_state *s = &w->state;
-    view_state_clear(s);
-    copy_vector(s->eye, job->view.eye);
-    copy_vector(s->target, job->view.target);
-    s->fov = job->view.fov;
-    s->exposure = job->view.exposure;
-    memcpy(s->sun, job->sun, sizeof s->sun);
-    memcpy(s->sun_irradiance, job->light.sun_irradiance, sizeof s->sun_irradiance);
-    s->sky = job->light.sky;
-    memcpy(s->sky_radiance, job->light.sky_radiance, sizeof s->sky_radiance);
-    memcpy(&s->course, &job->course, sizeof s->course);
-    s->time = job->time;
-    s->method = (int)job->options.method;
-    s->other_method = s->method == SHAPE_GL_EXACT ? SHAPE_GL_DEFAULT : SHAPE_GL_EXACT;
-    s->samples = job->samples;
-    s->light_grid = job->options.light.resolution;
-    s->divider = job->divider;
-    s->split = job->other_set != NULL;
-    if (s->split)
+    memcpy(s, job->state, sizeof *s);
+    if (job->other_set && !job->scene_read) {
+        s->split = true;
         s->other_method = s->method;
+    }
     view_state_take_set(s, job->set, &job->generator);
+    if (job->scene_read)
+        view_state_load_edits(s, job->scene_read);
     memcpy(&w->base, s, sizeof *s);
     memcpy(&w->asked, s, sizeof *s);
 }
@@ -103,6 +92,13 @@ static void obey(window_state *w, const view_panel_wish *wish)
         w->playing = !w->playing;
     if (w->shoot || wish->shoot)
         window_take_screenshot(w, wish);
+    if (w->save || wish->save)
+        window_save_scene(w, wish->save ? wish->file : "");
+    if (wish->open_file || w->dropped[0])
+        window_open_file(w, wish->open_file ? wish->file : w->dropped);
+    w->dropped[0] = 0;
+    if ((w->escape || wish->cancel) && !window_break_off(w) && w->escape)
+        glfwSetWindowShouldClose(w->window, GLFW_TRUE);
     if (w->copy || wish->copy) {
         char command[8192];
         int size[2];
@@ -112,7 +108,7 @@ static void obey(window_state *w, const view_panel_wish *wish)
         fputs(command, stderr);
         window_say(w, "copied, and written to standard error");
     }
-    w->undo = w->redo = w->home = w->shoot = w->copy = false;
+    w->undo = w->redo = w->home = w->shoot = w->copy = w->save = w->escape = false;
 }
 
 /* Asks for a picture where anything is other than when one was asked for last. */
@@ -150,8 +146,15 @@ static void look_at_picture(window_state *w)
     view_shared_drop(w->placed);
     w->placed = picture.placed;
     if (picture.number != w->picture.number) {
-        memmove(w->times, w->times + 1, (VIEW_TIMES - 1) * sizeof *w->times);
-        w->times[VIEW_TIMES - 1] = (float)picture.draw_ms;
+        /* A pass's time counts for the picture that it was made for, and the next ones show it no more. */
+        const shape_gl_costs *is = &picture.costs, *was = &w->picture.costs;
+        bool lit = is->lit_clouds != was->lit_clouds, baked = is->baked_clouds != was->baked_clouds;
+        const double ms[VIEW_PASSES] = {picture.volume_ms != w->picture.volume_ms ? picture.volume_ms : 0,
+                                        lit ? is->light_ms : 0, baked ? is->bake_ms : 0, picture.draw_ms};
+        for (int i = 0; i < VIEW_PASSES; i++) {
+            memmove(w->times[i], w->times[i] + 1, (VIEW_TIMES - 1) * sizeof *w->times[i]);
+            w->times[i][VIEW_TIMES - 1] = (float)ms[i];
+        }
     }
     if (w->saved_ms > 0 && picture.request >= w->reload_ask) {
         char text[128];
@@ -168,7 +171,7 @@ static void look_at_picture(window_state *w)
 static void show_title(window_state *w)
 {
     char title[512];
-    bool busy = !w->picture.done || (w->watch && view_watch_is_busy(w->watch)) ||
+    bool busy = !w->picture.done || w->opening || (w->watch && view_watch_is_busy(w->watch)) ||
                 (w->other_watch && view_watch_is_busy(w->other_watch));
     snprintf(title, sizeof title, "%.440s - neph-view%s", w->job->title, busy ? " [working]" : "");
     if (strcmp(title, w->title))
@@ -187,7 +190,12 @@ static void draw(window_state *w)
     const view_picture *p = &w->picture;
     char difference[384];
     window_describe_difference(w, difference, sizeof difference);
+    double work_done;
+    const char *work = window_work(w, &work_done);
     const view_panel_input input = {
+        .work = work,
+        .work_done = work_done,
+        .longest_ms = w->longest,
         .state = &w->state,
         .base = &w->base,
         .texture = p->texture,
@@ -211,7 +219,7 @@ static void draw(window_state *w)
         .read_ms = w->read_ms,
         .primitives = w->primitives,
         .all_clouds = view_shared_set(w->set)->cloud_count,
-        .times = w->times,
+        .times = (const float(*)[VIEW_TIMES])w->times,
         .watched = w->watch != NULL,
         .open = w->open,
         .help = w->help,
@@ -238,6 +246,7 @@ static void run(window_state *w)
         else
             glfwWaitEventsTimeout(0.5);
         left = left > 0 ? left - 1 : 2;
+        double begun = now_ms();
         double time = glfwGetTime(), passed = time - w->last;
         w->last = time;
         if (window_fly(w, passed))
@@ -256,7 +265,11 @@ static void run(window_state *w)
         show_title(w);
         if (!view_panel_is_busy() && !w->dragging && !w->looking && !w->splitting && !w->playing)
             view_history_keep(w->history, &w->state);
+        w->frames++;
+        if (w->frames > FIRST_FRAMES) /* the first ones compile what the driver needs */
+            w->longest = fmax(w->longest, now_ms() - begun);
     }
+    cli_say("%llu frames of the window, the longest took %.0f ms", (unsigned long long)w->frames, w->longest);
 }
 
 /* --- the beginning and the end --- */
@@ -360,12 +373,14 @@ static shape_status show(window_state *w, shape_error *error)
     shape_status status = start_threads(w, hidden, error);
     if (!status)
         run(w);
+    glfwHideWindow(w->window); /* what is being done may take a moment to end */
+    glfwPollEvents();
     view_watch_stop(w->watch);
     view_watch_stop(w->other_watch);
+    view_watch_stop(w->opening);
     window_stop_comparing(w);
     view_renderer_stop(w->renderer);
     view_history_destroy(w->history);
-    view_shared_drop(w->set);
     view_shared_drop(w->other_set);
     view_shared_drop(w->placed);
     view_panel_stop();
@@ -373,7 +388,7 @@ static shape_status show(window_state *w, shape_error *error)
     return status;
 }
 
-shape_status view_window(view_job *job, shape_error *error)
+shape_status view_window(view_job *job, void (*closed)(const view_job *job), shape_error *error)
 {
     if (!glfwInit())
         return no_window("no window", error);
@@ -388,8 +403,7 @@ shape_status view_window(view_job *job, shape_error *error)
     w->wake = wake;
     w->things = view_things_make(job->opaque);
     job->opaque = NULL; /* it goes with the last who looks at it */
-    if (job->scene_read)
-        w->scene_was = *job->scene_read;
+    w->scene = job->scene_read;
     w->picture.doing = "";
     begin_state(w);
     w->camera = w->start = view_camera_start(&job->view, min, max);
@@ -398,9 +412,18 @@ shape_status view_window(view_job *job, shape_error *error)
     shape_status status = w->window ? show(w, error) : no_window("no window with OpenGL 3.3", error);
     if (w->window)
         glfwDestroyWindow(w->window);
-    /* A saved scene looks as the window did. */
-    job->view = view_state_view(&w->state, job->view.width, job->view.height);
-    job->light = view_state_light(&w->state);
+    if (!status) {
+        view_job last = *job; /* as the window was */
+        last.state = &w->state;
+        last.scene_read = w->scene;
+        last.other_path = w->other_path;
+        last.set = view_shared_set(w->set);
+        last.view.width = w->asked_size[0];
+        last.view.height = w->asked_size[1];
+        closed(&last);
+    }
+    view_shared_drop(w->set);
+    shape_scene_destroy(w->own_scene);
     view_things_drop(w->things);
     free(w);
     glfwTerminate();

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "state_scene.h"
 #include "window_private.h"
 
 static size_t count_primitives(const shape_set *set)
@@ -28,7 +29,7 @@ shape_status window_take_set(window_state *w, shape_set *set, shape_error *error
 void window_open_other(window_state *w, const char *path)
 {
     shape_error error;
-    view_watch_stop(w->other_watch);
+    view_watch_leave(w->other_watch);
     w->other_watch = NULL;
     w->other_error[0] = 0;
     view_shared_drop(w->other_set);
@@ -94,6 +95,8 @@ static void hear_own(window_state *w)
     view_state next;
     memcpy(&next, &w->base, sizeof next);
     view_state_take_set(&next, news.contents.set, &news.contents.used);
+    if (news.contents.scene)
+        view_state_load_edits(&next, news.contents.scene);
     view_state_merge(&w->state, &w->base, &next);
     view_history_merge(w->history, &w->base, &next);
     memcpy(w->base.clouds, next.clouds, sizeof next.clouds);
@@ -106,6 +109,7 @@ static void hear_own(window_state *w)
     news.contents.set = NULL; /* taken */
     if (news.contents.scene)
         window_take_scene(w, news.contents.scene);
+    news.contents.scene = NULL; /* taken */
     if (news.contents.things_read)
         take_things(w, &news.contents);
     view_contents_free(&news.contents);
@@ -115,6 +119,7 @@ void window_hear_news(window_state *w)
 {
     hear_own(w);
     hear_other(w);
+    window_hear_opening(w);
 }
 
 void window_make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room)
@@ -132,21 +137,30 @@ void window_make_command(const window_state *w, const int size[2], bool alpha, c
     view_command_write(&w->state, &w->base, &command, text, room);
 }
 
-/* A name that is not taken yet, in the folder that the viewer was started in. */
-void window_take_screenshot(window_state *w, const view_panel_wish *wish)
+void window_free_name(const window_state *w, const char *suffix, char *path, size_t room)
 {
-    char name[SHAPE_NAME_MAX + 1], path[SHAPE_NAME_MAX + 32], command[8192];
+    char name[SHAPE_NAME_MAX + 1];
     cli_bare_name(w->job->path[0] ? w->job->path : w->job->title, "cloud", name);
     for (int i = 1; i < 10000; i++) {
-        snprintf(path, sizeof path, "%s-%04d.png", name, i);
+        snprintf(path, room, "%s-%04d.%s", name, i, suffix);
         if (access(path, F_OK))
             break;
     }
+}
+
+/* A picture of what a scene cannot hold has the commands alone. */
+void window_take_screenshot(window_state *w, const view_panel_wish *wish)
+{
+    char path[SHAPE_NAME_MAX + 32], command[8192];
+    shape_error error;
+    size_t length;
+    window_free_name(w, wish->shoot_exr ? "exr" : "png", path, sizeof path);
     int size[2] = {wish->shoot_size[0], wish->shoot_size[1]};
     if (size[0] < 1 || size[1] < 1)
         glfwGetFramebufferSize(w->window, &size[0], &size[1]);
     window_make_command(w, size, wish->shoot_alpha, command, sizeof command);
-    view_renderer_shoot(w->renderer, path, size[0], size[1], wish->shoot_alpha, command);
+    char *scene = window_scene_text(w, path, size, &length, &error);
+    view_renderer_shoot(w->renderer, path, size[0], size[1], wish->shoot_alpha, command, scene);
 }
 
 void window_ask_generator(window_state *w)

@@ -1,5 +1,6 @@
 /* Keys and the mouse of the window. */
 #include <math.h>
+#include <stdio.h>
 
 #include "window_private.h"
 
@@ -59,6 +60,8 @@ static void on_control_key(window_state *w, int key, bool shift)
         w->redo = true;
     else if (key == GLFW_KEY_C)
         w->copy = true;
+    else if (key == GLFW_KEY_S)
+        w->save = true;
 }
 
 static void on_key(GLFWwindow *window, int key, int code, int action, int modifiers)
@@ -78,7 +81,7 @@ static void on_key(GLFWwindow *window, int key, int code, int action, int modifi
     if (action == GLFW_REPEAT)
         return;
     if (key == GLFW_KEY_ESCAPE)
-        glfwSetWindowShouldClose(window, GLFW_TRUE);
+        w->escape = true;
     else if (key == GLFW_KEY_HOME)
         w->home = true;
     else if (key == GLFW_KEY_TAB)
@@ -90,9 +93,9 @@ static void on_key(GLFWwindow *window, int key, int code, int action, int modifi
     else if (key == GLFW_KEY_B)
         w->state.boxes = !w->state.boxes;
     else if (key == GLFW_KEY_P)
-        w->state.outlines = !w->state.outlines;
+        w->state.outlines = (w->state.outlines + 1) % VIEW_OUTLINES;
     else if (key == GLFW_KEY_T)
-        w->state.heat = (view_heat)((w->state.heat + 1) % 3);
+        w->state.heat = (w->state.heat + 1) % VIEW_HEATS;
     else if (key == GLFW_KEY_R)
         w->state.difference = !w->state.difference;
     else if (key == GLFW_KEY_SPACE)
@@ -108,7 +111,8 @@ bool window_fly(window_state *w, double seconds)
         double right, up, ahead;
     } moves[] = {{GLFW_KEY_W, 0, 0, 1},  {GLFW_KEY_S, 0, 0, -1}, {GLFW_KEY_D, 1, 0, 0},
                  {GLFW_KEY_A, -1, 0, 0}, {GLFW_KEY_E, 0, 1, 0},  {GLFW_KEY_Q, 0, -1, 0}};
-    if (view_panel_has_keys())
+    if (view_panel_has_keys() || glfwGetKey(w->window, GLFW_KEY_LEFT_CONTROL) ||
+        glfwGetKey(w->window, GLFW_KEY_RIGHT_CONTROL))
         return false;
     bool fast = glfwGetKey(w->window, GLFW_KEY_LEFT_SHIFT) || glfwGetKey(w->window, GLFW_KEY_RIGHT_SHIFT);
     double step = w->camera.size * fmin(seconds, 0.25) * (fast ? 2 : 0.5);
@@ -121,6 +125,13 @@ bool window_fly(window_state *w, double seconds)
     return any;
 }
 
+static void on_drop(GLFWwindow *window, int count, const char **paths)
+{
+    window_state *w = state_of(window);
+    if (count > 0)
+        snprintf(w->dropped, sizeof w->dropped, "%s", paths[0]);
+}
+
 void window_listen(window_state *w)
 {
     glfwSetWindowUserPointer(w->window, w);
@@ -128,5 +139,6 @@ void window_listen(window_state *w)
     glfwSetMouseButtonCallback(w->window, on_button);
     glfwSetScrollCallback(w->window, on_scroll);
     glfwSetKeyCallback(w->window, on_key);
+    glfwSetDropCallback(w->window, on_drop);
     glfwGetCursorPos(w->window, &w->mouse_x, &w->mouse_y);
 }

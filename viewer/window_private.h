@@ -25,17 +25,21 @@ typedef struct window_state {
     view_watch *watch, *other_watch; /* other: the file of the right half */
     view_shared *set, *other_set, *placed;
     view_things *things;
-    shape_scene
-        scene_was; /* what the scene's file said last of light and camera; its pointers are not looked at */
+    const shape_scene *scene; /* as its file said it last; NULL: there is none */
+    shape_scene *own_scene;   /* that, where it was read by the window */
+    view_watch *opening;      /* a file that is to take the place of the first; NULL: none */
+    char opening_path[VIEW_PATH_MAX], own_path[VIEW_PATH_MAX], dropped[VIEW_PATH_MAX];
     char other_path[VIEW_PATH_MAX]; /* empty: there is none */
     uint64_t set_number, asked_number, asks,
         reload_ask;  /* reload_ask: the first request for a file read again; 0 */
     double saved_ms; /* when that file was saved; 0: it has been shown */
     view_picture picture;
     char error[4096], other_error[4096], said[640], title[512];
-    float times[VIEW_TIMES];
+    float times[VIEW_PASSES][VIEW_TIMES];
     double read_ms, last, said_until;
-    bool open, help, playing, undo, redo, home, shoot, copy, ask_anew;
+    bool open, help, playing, undo, redo, home, shoot, copy, save, escape;
+    double longest;  /* time between two looks at the events [ms], but for waiting */
+    uint64_t frames; /* drawn */
     size_t primitives;
     view_reference *reference; /* NULL until the difference is wanted */
     view_difference difference;
@@ -46,8 +50,27 @@ typedef struct window_state {
 
 /* --- window_scene.c: a scene that is read again --- */
 
-/* Takes over what the file says otherwise than it did: light and camera. */
-void window_take_scene(window_state *w, const shape_scene *scene);
+/* Takes over what the file says otherwise than it did: light, camera and view. Takes the scene over. */
+void window_take_scene(window_state *w, shape_scene *scene);
+/* Writes a scene file of what is seen, into the folder that the viewer was started in; path "": by a name that is free. */
+void window_save_scene(window_state *w, const char *path);
+/* The scene of what is seen, for a file at target; the caller frees it. NULL, and *error, where a scene cannot hold it. */
+char *window_scene_text(window_state *w, const char *target, const int size[2], size_t *length,
+                        shape_error *error);
+
+/* --- window_open.c: another file in the place of the first --- */
+
+/* Begins to read a file; what is shown stays until it has been read. */
+void window_open_file(window_state *w, const char *path);
+/* Shows it when it has been read. */
+void window_hear_opening(window_state *w);
+
+/* --- window_work.c: work that takes long --- */
+
+/* What is under way, for longer than a moment, and how far it is (below 0: not known); NULL: nothing. */
+const char *window_work(window_state *w, double *done);
+/* Breaks it off; false where there is nothing to break off. */
+bool window_break_off(window_state *w);
 
 /* --- window_input.c: keys and the mouse --- */
 
@@ -68,6 +91,8 @@ void window_hear_news(window_state *w);
 /* Asks for another cloud where the generator's settings are not those that were asked for. */
 void window_ask_generator(window_state *w);
 /* The commands that make what is seen. */
+/* A name that is not taken yet, "name-0001.suffix", in the folder that the viewer was started in. */
+void window_free_name(const window_state *w, const char *suffix, char *path, size_t room);
 void window_make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room);
 void window_take_screenshot(window_state *w, const view_panel_wish *wish);
 

@@ -23,6 +23,24 @@ static void free_options(shape_scene_options *options)
     free(options->items);
 }
 
+void shape_scene_clear_options(shape_scene_options *options)
+{
+    free_options(options);
+    memset(options, 0, sizeof *options);
+}
+
+void shape_scene_clear_edits(shape_scene *scene)
+{
+    for (size_t i = 0; i < scene->edit_count; i++) {
+        free(scene->edits[i].note);
+        free(scene->edits[i].cloud);
+        free_options(&scene->edits[i].medium);
+    }
+    free(scene->edits);
+    scene->edits = NULL;
+    scene->edit_count = scene->edit_capacity = 0;
+}
+
 void shape_scene_destroy(shape_scene *scene)
 {
     if (!scene)
@@ -42,7 +60,10 @@ void shape_scene_destroy(shape_scene *scene)
         free(scene->meshes[i].note);
         free(scene->meshes[i].file);
     }
+    shape_scene_clear_edits(scene);
     free_options(&scene->medium);
+    free_options(&scene->view);
+    free(scene->compare);
     free(scene->meshes);
     free(scene->clouds);
     free(scene->note);
@@ -73,6 +94,33 @@ shape_status shape_scene_add_mesh(shape_scene *scene, shape_scene_mesh **mesh, s
     (*mesh)->albedo[0] = (*mesh)->albedo[1] = (*mesh)->albedo[2] = 0.5;
     (*mesh)->place = shape_transform_defaults();
     return SHAPE_OK;
+}
+
+shape_status shape_scene_add_edit(shape_scene *scene, const char *cloud, shape_scene_edit **edit,
+                                  shape_error *error)
+{
+    shape_status status = shape_array_reserve((void **)&scene->edits, &scene->edit_capacity,
+                                              scene->edit_count + 1, sizeof *scene->edits, error);
+    if (status)
+        return status;
+    shape_scene_edit *made = &scene->edits[scene->edit_count];
+    memset(made, 0, sizeof *made);
+    made->scale = 1;
+    if (cloud)
+        status = shape_scene_set_text(&made->cloud, cloud, error);
+    if (status)
+        return status;
+    scene->edit_count++;
+    *edit = made;
+    return SHAPE_OK;
+}
+
+const char *shape_scene_find_option(const shape_scene_options *options, const char *name)
+{
+    for (size_t i = 0; i < options->count; i++)
+        if (!strcmp(options->items[i].name, name))
+            return options->items[i].text;
+    return NULL;
 }
 
 shape_frame shape_scene_mesh_frame(const shape_scene_mesh *mesh, bool z_up)
@@ -126,6 +174,8 @@ shape_status shape_scene_add_option(shape_scene_options *options, const char *na
 bool shape_scene_is(const void *bytes, size_t size)
 {
     const unsigned char *c = bytes;
+    if (shape_scene_is_picture(bytes, size))
+        return true;
     while (size && strchr(" \t\r\n", *c) && *c) {
         c++;
         size--;

@@ -47,9 +47,36 @@ static shape_status sun_angle(scene_reader *r, const json_t *value, void *to)
     return scene_read_number(r, value, 0, 90, &scene->sun_angle);
 }
 
+static shape_status day_hour(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_number(r, value, 0, 24, &((shape_day *)to)->hour);
+}
+
+static shape_status day_latitude(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_number(r, value, -90, 90, &((shape_day *)to)->latitude);
+}
+
+static shape_status day_declination(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_number(r, value, -23.45, 23.45, &((shape_day *)to)->declination);
+}
+
+static const scene_member day_members[] = {
+    {"hour", day_hour, 0}, {"latitude", day_latitude, 0}, {"declination", day_declination, 0}, {0}};
+
+static shape_status sun_day(scene_reader *r, const json_t *value, void *to)
+{
+    shape_scene *scene = ((sun_parts *)to)->scene;
+    scene->day_given = true;
+    scene->day = (shape_day){12, 50, 0};
+    return scene_read_object(r, value, day_members, &scene->day);
+}
+
 static const scene_member sun_members[] = {{"azimuth", sun_azimuth, 0},     {"height", sun_height, 0},
                                            {"direction", sun_direction, 0}, {"irradiance", sun_irradiance, 0},
-                                           {"angle", sun_angle, 0},         {0}};
+                                           {"angle", sun_angle, 0},         {"day", sun_day, 0},
+                                           {0}};
 
 shape_status scene_sun(scene_reader *r, const json_t *value, void *to)
 {

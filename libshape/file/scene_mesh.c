@@ -1,4 +1,4 @@
-/* The opaque meshes of scenes from JSON: their files, axes, units, places and colours. */
+/* What is opaque in scenes, from JSON: meshes with their files, axes, units, places and colours, and the ground. */
 #include <string.h>
 
 #include "file/scene_reader.h"
@@ -59,4 +59,26 @@ shape_status scene_meshes(scene_reader *r, const json_t *value, void *to)
         scene_leave(r, used);
     }
     return SHAPE_OK;
+}
+
+static shape_status ground_height(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_number(r, value, -1e6, 1e6, &((shape_scene *)to)->ground);
+}
+
+static shape_status ground_albedo(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_one_or_three(r, value, 0, 1, ((shape_scene *)to)->ground_albedo);
+}
+
+static const scene_member ground_members[] = {
+    {"height", ground_height, 0}, {"albedo", ground_albedo, 0}, {0}};
+
+shape_status scene_ground(scene_reader *r, const json_t *value, void *to)
+{
+    shape_scene *scene = to;
+    scene->ground_given = true;
+    for (int i = 0; i < 3; i++)
+        scene->ground_albedo[i] = 0.2;
+    return scene_read_object(r, value, ground_members, scene);
 }

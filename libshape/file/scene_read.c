@@ -1,5 +1,6 @@
 /* Scenes from JSON (docs/scene.md): untrusted text, checked key by key. The limits, the parser, and the members of the
- * whole; what these hold is read by scene_cloud.c, scene_mesh.c and scene_light.c. */
+ * whole; what these hold is read by scene_cloud.c, scene_edit.c, scene_mesh.c and scene_light.c. */
+#include "file/scene_private.h"
 #include "file/scene_reader.h"
 
 static shape_status scene_version(scene_reader *r, const json_t *value, void *to)
@@ -13,7 +14,11 @@ static shape_status scene_version(scene_reader *r, const json_t *value, void *to
 static const scene_member scene_members[] = {{"scene", scene_version, 0},
                                              {"clouds", scene_clouds, 0},
                                              {"meshes", scene_meshes, 0},
+                                             {"ground", scene_ground, 0},
                                              {"medium", scene_read_options, offsetof(shape_scene, medium)},
+                                             {"edits", scene_edits, 0},
+                                             {"view", scene_read_options, offsetof(shape_scene, view)},
+                                             {"compare", scene_read_text, offsetof(shape_scene, compare)},
                                              {"sun", scene_sun, 0},
                                              {"lamp", scene_lamp, 0},
                                              {"sky", scene_sky, 0},
@@ -86,6 +91,8 @@ shape_status shape_scene_decode(const void *bytes, size_t size, const char *name
 {
     shape_error unwanted;
     scene_reader r = {.name = name, .error = error ? error : &unwanted};
+    if (shape_scene_is_picture(bytes, size) && !scene_find_in_picture(&bytes, &size))
+        return scene_wrong(&r, "a picture that holds no scene (those that neph-view's window writes hold one)");
     shape_status status = check_limits(&r, bytes, size);
     if (status)
         return status;

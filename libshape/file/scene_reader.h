@@ -59,6 +59,8 @@ shape_status scene_place_keep_depth(scene_reader *r, const json_t *value, void *
 
 /* The members of a scene: to a shape_scene. */
 shape_status scene_clouds(scene_reader *r, const json_t *value, void *to);
+shape_status scene_edits(scene_reader *r, const json_t *value, void *to);
+shape_status scene_ground(scene_reader *r, const json_t *value, void *to);
 shape_status scene_meshes(scene_reader *r, const json_t *value, void *to);
 shape_status scene_sun(scene_reader *r, const json_t *value, void *to);
 shape_status scene_lamp(scene_reader *r, const json_t *value, void *to);

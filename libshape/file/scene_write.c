@@ -209,10 +209,61 @@ static void put_meshes(writer *w, const shape_scene *scene, bool *first)
     fputs("\n  ]", w->out);
 }
 
+static void put_ground(writer *w, const shape_scene *scene, bool *first)
+{
+    if (!scene->ground_given)
+        return;
+    put_key(w, first, "\n  ", "ground");
+    fputs("{\"height\": ", w->out);
+    put_number(w, scene->ground);
+    fputs(", \"albedo\": ", w->out);
+    put_one_or_three(w, scene->ground_albedo);
+    fputc('}', w->out);
+}
+
+static void put_edit(writer *w, const shape_scene_edit *edit)
+{
+    bool first = true;
+    shape_transform place = {.scale = {edit->scale, edit->scale, edit->scale}};
+    memcpy(place.translate, edit->translate, sizeof place.translate);
+    memcpy(place.rotate, edit->rotate, sizeof place.rotate);
+    fputs("\n    {", w->out);
+    if (edit->note) {
+        put_key(w, &first, " ", "note");
+        put_text(w, edit->note);
+    }
+    put_key(w, &first, " ", "cloud");
+    put_text(w, edit->cloud ? edit->cloud : "");
+    if (edit->medium.count) {
+        put_key(w, &first, " ", "medium");
+        put_options(w, &edit->medium);
+    }
+    put_place(w, &place, &first, " ");
+    if (edit->hidden) {
+        put_key(w, &first, " ", "hidden");
+        fputs("true", w->out);
+    }
+    fputc('}', w->out);
+}
+
+static void put_edits(writer *w, const shape_scene *scene, bool *first)
+{
+    if (!scene->edit_count)
+        return;
+    put_key(w, first, "\n  ", "edits");
+    fputc('[', w->out);
+    for (size_t i = 0; i < scene->edit_count; i++) {
+        fputs(i ? "," : "", w->out);
+        put_edit(w, &scene->edits[i]);
+    }
+    fputs("\n  ]", w->out);
+}
+
 static void put_sun(writer *w, const shape_scene *scene, bool *first)
 {
     bool none = true;
-    if (!scene->sun_none && !scene->sun_given && !scene->sun_irradiance_given && !scene->sun_angle_given)
+    if (!scene->sun_none && !scene->sun_given && !scene->sun_irradiance_given && !scene->sun_angle_given &&
+        !scene->day_given)
         return;
     put_key(w, first, "\n  ", "sun");
     if (scene->sun_none) {
@@ -233,6 +284,16 @@ static void put_sun(writer *w, const shape_scene *scene, bool *first)
     if (scene->sun_angle_given) {
         put_key(w, &none, " ", "angle");
         put_number(w, scene->sun_angle);
+    }
+    if (scene->day_given) {
+        put_key(w, &none, " ", "day");
+        fputs("{\"hour\": ", w->out);
+        put_number(w, scene->day.hour);
+        fputs(", \"latitude\": ", w->out);
+        put_number(w, scene->day.latitude);
+        fputs(", \"declination\": ", w->out);
+        put_number(w, scene->day.declination);
+        fputc('}', w->out);
     }
     fputc('}', w->out);
 }
@@ -302,15 +363,25 @@ static void put_scene(writer *w, const shape_scene *scene)
     }
     fputs(scene->cloud_count ? "\n  ]" : "]", w->out);
     put_meshes(w, scene, &first);
+    put_ground(w, scene, &first);
     if (scene->medium.count) {
         put_key(w, &first, between, "medium");
         put_options(w, &scene->medium);
     }
+    put_edits(w, scene, &first);
     put_light(w, scene, &first);
     put_camera(w, scene, &first);
     if (scene->exposure_given) {
         put_key(w, &first, between, "exposure");
         put_number(w, scene->exposure);
+    }
+    if (scene->view.count) {
+        put_key(w, &first, between, "view");
+        put_options(w, &scene->view);
+    }
+    if (scene->compare) {
+        put_key(w, &first, between, "compare");
+        put_text(w, scene->compare);
     }
     fputs("\n}\n", w->out);
 }

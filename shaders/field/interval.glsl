@@ -10,7 +10,7 @@
 vec4 candidate[CANDIDATES]; // entry, exit, growth of u^2, cloud
 int candidate_count;
 float window_end;
-float fetches, steps; // work counts
+float fetches, steps, candidates_seen; // work counts
 
 // Williams et al. 2005; a ray that runs along a slab is in or out.
 bool clip_slab(float low, float high, float origin, float direction, inout float t0, inout float t1)

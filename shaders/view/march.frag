@@ -175,7 +175,7 @@ void main()
     float ray_end = behind.a; // where something opaque stands, or nothing
     ray = camera_ray();
     random_start = pixel_random();
-    fetches = steps = reached = 0.0;
+    fetches = steps = candidates_seen = reached = 0.0;
     work = 0;
     work_end = 0; // not known before the first look
     if (resume == 1) {
@@ -190,6 +190,7 @@ void main()
         steps = last.x;
         fetches = last.y;
         reached = last.z;
+        candidates_seen = last.w;
     }
     while (reached < ray_end && going_on()) {
         float until = ray_end;
@@ -198,6 +199,7 @@ void main()
             until = min(reached < ray_end ? reached + window_length : ray_end, ray_end);
         }
         gather(ray, reached, until);
+        candidates_seen += float(candidate_count);
         work++;
         if (work_end == 0)
             work_end = work + WORK_LIMIT; // so that each part gets on
@@ -210,7 +212,7 @@ void main()
     }
     if (reached < ray_end && transmittance > transmittance_end) {
         radiance_out = vec4(radiance, transmittance);
-        work_out = vec4(steps, fetches, reached, 0.0);
+        work_out = vec4(steps, fetches, reached, candidates_seen);
         return;
     }
     if (transmittance <= transmittance_end) {
@@ -220,5 +222,5 @@ void main()
     }
     bool sky = behind.a > NO_SURFACE;
     radiance_out = vec4(radiance + transmittance * (sky ? sky_radiance(ray) : behind.rgb), sky ? 1.0 - transmittance : 1.0);
-    work_out = vec4(steps, fetches, -1.0, 0.0);
+    work_out = vec4(steps, fetches, -1.0, candidates_seen);
 }

@@ -102,7 +102,7 @@ void paper_candidates(float entry, float number)
 void main()
 {
     ray = camera_ray();
-    fetches = steps = 0.0;
+    fetches = steps = candidates_seen = 0.0;
     for (int c = 0; c < cloud_count && transmittance >= 1e-6; c++) {
         load_cloud(c, ray);
         float t0 = 0.0, t1 = 1e30;
@@ -111,6 +111,7 @@ void main()
         float t = 0.0, entry = -1e30, number = -1.0;
         do {
             paper_candidates(entry, number);
+            candidates_seen += float(candidate_count);
             for (int i = 0; i < candidate_count && transmittance >= 1e-6; i++) {
                 march_candidate(candidate[i], cloud_support2, t);
                 entry = candidate[i].x;
@@ -119,5 +120,5 @@ void main()
         } while (candidate_count == CANDIDATES && transmittance >= 1e-6);
     }
     radiance_out = vec4(radiance + transmittance * sky_radiance(ray), 1.0 - transmittance);
-    work_out = vec4(steps, fetches, 0.0, 0.0);
+    work_out = vec4(steps, fetches, 0.0, candidates_seen);
 }

@@ -398,7 +398,7 @@ void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width,
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void shape_gl_show_work(shape_gl_renderer *renderer, bool fetches, float full, int width, int height)
+void shape_gl_show_heat(shape_gl_renderer *renderer, shape_gl_heat kind, float full, int width, int height)
 {
     if (!renderer->heat && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
                                              "view/heat.frag", "", &renderer->heat, NULL))
@@ -407,7 +407,8 @@ void shape_gl_show_work(shape_gl_renderer *renderer, bool fetches, float full, i
     glUseProgram(renderer->heat);
     gl_bind(renderer->heat, "work", 0, GL_TEXTURE_2D, renderer->mean.textures[1]);
     gl_set_float(renderer->heat, "full", full);
-    gl_set_int(renderer->heat, "fetches", fetches);
+    gl_bind(renderer->heat, "accumulated", 1, GL_TEXTURE_2D, renderer->mean.textures[0]);
+    gl_set_int(renderer->heat, "kind", (int)kind);
     gl_draw_triangle(renderer);
 }
 

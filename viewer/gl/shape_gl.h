@@ -92,9 +92,17 @@ void shape_gl_finish(void);
 shape_status shape_gl_read(shape_gl_renderer *renderer, float *rgba, shape_error *error);
 /* Shows the picture in the current framebuffer (a window of the view's size), tone-mapped. */
 void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width, int height);
-/* Shows in the same way what the picture took: steps (or, where asked for, fetches) a pixel, from black over red and
- * yellow to white at `full` of them. */
-void shape_gl_show_work(shape_gl_renderer *renderer, bool fetches, float full, int width, int height);
+/* What a heat map shows of each pixel. */
+typedef enum shape_gl_heat {
+    SHAPE_GL_HEAT_STEPS,
+    SHAPE_GL_HEAT_FETCHES,    /* texels read */
+    SHAPE_GL_HEAT_CANDIDATES, /* primitives whose support the ray hits, of the methods that look at primitives; the
+                                 default method marches baked density, and has none */
+    SHAPE_GL_HEAT_DEPTH       /* optical depth of the clouds; where something opaque stands it is infinite */
+} shape_gl_heat;
+
+/* Shows a map in the same way, from black over red and yellow to white at `full`. */
+void shape_gl_show_heat(shape_gl_renderer *renderer, shape_gl_heat kind, float full, int width, int height);
 shape_gl_costs shape_gl_get_costs(const shape_gl_renderer *renderer);
 
 /* For the tests: density (red), u^2 (green) and noise (blue) at `count` points of cloud 0, by the shaders. */

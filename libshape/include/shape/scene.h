@@ -4,6 +4,7 @@
 #ifndef SHAPE_SCENE_H
 #define SHAPE_SCENE_H
 
+#include "shape/day.h"
 #include "shape/transform.h"
 #include "shape/view.h"
 
@@ -20,6 +21,7 @@ enum {
     SHAPE_SCENE_CLOUDS_MAX = 100000, /* clouds, all copies counted, that programs place */
     SHAPE_SCENE_PRIMITIVES_MAX =
         10000000,                  /* primitives that programs hold for one scene; copies share theirs */
+    SHAPE_SCENE_EDITS_MAX = 1000,  /* edited clouds */
     SHAPE_SCENE_MESHES_MAX = 1000, /* meshes */
     SHAPE_SCENE_TRIANGLES_MAX = 10000000, /* triangles of all meshes that programs hold for one scene */
 };
@@ -63,6 +65,16 @@ typedef struct shape_scene_mesh {
     shape_transform place; /* after axes and unit; keep_depth is not used */
 } shape_scene_mesh;
 
+/* One entry of "edits": a cloud of the scene, after all are made, by its name; each may be edited once. */
+typedef struct shape_scene_edit {
+    char *note;                      /* NULL: none */
+    char *cloud;                     /* its name, as neph-info tells it */
+    shape_scene_options medium;      /* medium options over those that it has */
+    double translate[3], rotate[3];  /* metres; degrees about x, then y, then z */
+    double scale;                    /* 1e-6 to 1e6; both this and rotate about the cloud's own origin */
+    bool hidden;                     /* it is left out */
+} shape_scene_edit;
+
 /* What is not given is left to the program, whose defaults docs/scene.md repeats. */
 typedef struct shape_scene {
     char *note;
@@ -70,12 +82,20 @@ typedef struct shape_scene {
     size_t cloud_count, cloud_capacity;
     shape_scene_mesh *meshes;
     size_t mesh_count, mesh_capacity;
+    bool ground_given;
+    double ground, ground_albedo[3]; /* level ground, as opaque as meshes: its height [m], +-1e6; 0 to 1 */
     shape_scene_options medium; /* overrides for all clouds, before each entry's own */
+    shape_scene_edit *edits;
+    size_t edit_count, edit_capacity;
+    shape_scene_options view; /* options of neph-view: method, quality, what moves, what is shown for judging */
+    char *compare;            /* a file that neph-view shows right of the first; NULL: none */
 
     bool sun_given, sun_none, sun_irradiance_given, sun_angle_given;
     double sun[2];            /* azimuth from +z towards +x, height; degrees; +-360, +-90 */
     double sun_irradiance[3]; /* on a plane that faces it, 0 to 1e9 */
     double sun_angle;         /* diameter, degrees, 0 to 90 */
+    bool day_given;           /* the sun goes by the time of day, and the irradiance is what the air has not taken yet */
+    shape_day day;
 
     bool lamp_given;
     double lamp[3];           /* a lamp's place [m], +-1e12 */
@@ -99,6 +119,14 @@ void shape_scene_destroy(shape_scene *scene); /* NULL is allowed */
 shape_status shape_scene_add_cloud(shape_scene *scene, shape_scene_cloud **cloud, shape_error *error);
 /* Adds a mesh with the defaults above and no file. Pointers into scene->meshes end with the call. */
 shape_status shape_scene_add_mesh(shape_scene *scene, shape_scene_mesh **mesh, shape_error *error);
+/* Adds an edit of a cloud by its name that changes nothing yet. Pointers into scene->edits end with the call. */
+shape_status shape_scene_add_edit(shape_scene *scene, const char *cloud, shape_scene_edit **edit,
+                                  shape_error *error);
+/* Takes all edits away, and all options of a list. */
+void shape_scene_clear_edits(shape_scene *scene);
+void shape_scene_clear_options(shape_scene_options *options);
+/* The text of an option; NULL where it is not there or a flag. */
+const char *shape_scene_find_option(const shape_scene_options *options, const char *name);
 /* The whole placement of a mesh, from units of its file to metres of the world; z_up: what its format has as up, for
  * SHAPE_SCENE_UP_FORMAT. */
 shape_frame shape_scene_mesh_frame(const shape_scene_mesh *mesh, bool z_up);
@@ -110,13 +138,19 @@ shape_status shape_scene_add_option(shape_scene_options *options, const char *na
 /* Replaces *member, a text of a scene, by a copy of text. */
 shape_status shape_scene_set_text(char **member, const char *text, shape_error *error);
 
-/* Whether these bytes look like a scene and not like a .neph: the first that is no blank is a brace. */
+/* The text of a picture under which a scene is kept in it (shape_image_text), so that the picture can be opened as one. */
+#define SHAPE_SCENE_PICTURE_KEY "nephele-scene"
+/* Whether these bytes begin as a PNG or an EXR does. */
+bool shape_scene_is_picture(const void *bytes, size_t size);
+
+/* Whether these bytes look like a scene and not like a .neph: the first that is no blank is a brace; or it is a picture. */
 bool shape_scene_is(const void *bytes, size_t size);
 
 /* Reads untrusted JSON. name stands before every error: "name:line:column: ..." where it is no JSON,
  * "name: clouds[2].scale: ..." where a value is wrong. Unknown keys, keys twice, wrong types and values outside their ranges are
  * errors (SHAPE_ERROR_FORMAT), and so is what passes a limit above (SHAPE_ERROR_LIMIT). Options are
- * kept as texts: their names and values are the generators' to check. */
+ * kept as texts: their names and values are the generators' to check. Of a PNG or EXR, the scene that it holds is read;
+ * where it holds none, that is an error, too. */
 shape_status shape_scene_decode(const void *bytes, size_t size, const char *name, shape_scene **scene,
                                 shape_error *error);
 /* The scene as JSON, which shape_scene_decode reads to an equal one. The caller frees *text. Errors: memory; whatever
