@@ -1,5 +1,5 @@
-# Nothing lost: every writing program but neph-chart is killed at random moments (kill_at_random.py), and runs against a full
-# disk, a folder that may not be written, pipes and streams that are closed, and an input that ends early. A file is whole or
+# Nothing lost: every writing program is killed at random moments (kill_at_random.py, kill_chart.py), and all but neph-chart
+# run against a full disk, a folder that may not be written, pipes and streams that are closed, and an input that ends early. A file is whole or
 # not there, a failure is one line and exit code 1, and no temporary file is left.
 # $1: programs, $2: source folder, $3: kills (60).
 set -eu
@@ -25,6 +25,7 @@ refused() {
 }
 
 python3 "$source/tests/kill_at_random.py" "$bin" "$source" "$kills" "${4:-1}"
+python3 "$source/tests/kill_chart.py" "$bin" $(((kills + 19) / 20)) "${4:-1}"
 
 mesh=$source/examples/meshes/suzanne.ply
 fog=$source/tests/frozen/vdb/fog.vdb

@@ -92,11 +92,10 @@ shape_status shadow_pairs_find(const shape_volume *volume, shape_dvec3 sun, shad
             pairs->first[i + 1] += pairs->first[i];
         memcpy(next, pairs->first, count * sizeof *next);
         pairs->casters = malloc((pairs->first[count] + 1) * sizeof *pairs->casters);
-    }
-    if (pairs->casters) {
-        walk(boxes, count, NULL, next, pairs->casters);
-        for (size_t i = 0; i < count;
-             i++) /* in their own order, so that sums are the same whatever the sun */
+        if (pairs->casters)
+            walk(boxes, count, NULL, next, pairs->casters);
+        /* In their own order, so that sums are the same whatever the sun. */
+        for (size_t i = 0; pairs->casters && i < count; i++)
             qsort(pairs->casters + pairs->first[i], pairs->first[i + 1] - pairs->first[i],
                   sizeof *pairs->casters, compare_numbers);
     }

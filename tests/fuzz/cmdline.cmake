@@ -4,7 +4,8 @@ set(CMDLINE_PROGRAMS neph-gauss neph-lsys neph-meta neph-layer neph-mesh neph-ed
 find_package(Threads REQUIRED)
 set(CMDLINE_LIST "")
 set(CMDLINE_MAINS "")
-target_compile_options(nephele_cli PRIVATE -fsanitize=fuzzer-no-link)
+set(CMDLINE_SOURCES "") # what two programs share is built once
+target_compile_options(nephele_cli PRIVATE ${REPORTS})
 foreach(program ${CMDLINE_PROGRAMS})
   string(REPLACE "-" "_" main "${program}_main")
   string(APPEND CMDLINE_LIST " PROGRAM(${main})")
@@ -13,9 +14,11 @@ foreach(program ${CMDLINE_PROGRAMS})
   get_target_property(folder ${program} SOURCE_DIR)
   get_target_property(libraries ${program} LINK_LIBRARIES)
   list(TRANSFORM sources REPLACE "^([^/].*)$" "${folder}/\\1")
+  list(REMOVE_ITEM sources ${CMDLINE_SOURCES})
+  list(APPEND CMDLINE_SOURCES ${sources})
   add_library(cmdline_${program} OBJECT ${sources})
   target_compile_definitions(cmdline_${program} PRIVATE main=${main})
-  target_compile_options(cmdline_${program} PRIVATE -fsanitize=fuzzer-no-link
+  target_compile_options(cmdline_${program} PRIVATE ${REPORTS}
                          "$<$<COMPILE_LANGUAGE:C>:SHELL:-include ${CMAKE_CURRENT_BINARY_DIR}/cmdline.h>")
   target_include_directories(cmdline_${program} PRIVATE ${folder})
   target_link_libraries(cmdline_${program} PRIVATE ${libraries})

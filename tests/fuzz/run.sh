@@ -2,10 +2,19 @@
 # Builds the fuzzers and runs each for SECONDS (60 where not given), or for so many inputs:
 #   sh tests/fuzz/run.sh [SECONDS] [NAME]...
 #   sh tests/fuzz/run.sh --runs N [NAME]...
+#   sh tests/fuzz/run.sh --plain --runs N [NAME]...
+# --plain does not trace comparisons: two to five times the runs, once the inputs worth keeping have been found without it.
 # What they find worth keeping goes to build/fuzz/corpus/NAME; tests/fuzz/corpus/NAME are the seeds. A crash leaves its
 # input in build/fuzz/crashes and ends with exit code 1.
 set -eu
 cd "$(dirname "$0")/../.."
+plain=OFF
+build=build/fuzz
+if [ "${1:-}" = --plain ]; then
+    plain=ON
+    build=build/fuzz-plain
+    shift
+fi
 limit=-max_total_time
 if [ "${1:-}" = --runs ]; then
     limit=-runs
@@ -20,14 +29,15 @@ case $many in
 esac
 [ $# = 0 ] || shift
 
-cmake --preset fuzz > /dev/null
-build=build/fuzz
+cmake --preset fuzz -B "$build" -DNEPHELE_FUZZ_PLAIN=$plain > /dev/null
 if [ $# = 0 ]; then
     for source in tests/fuzz/fuzz_*.c; do
         set -- "$@" "$(basename "$source" .c | sed s/^fuzz_//)"
     done
 fi
 mkdir -p "$build/crashes"
+# A heap that is small and keeps no stacks is several times quicker; a crash is run again for its stacks.
+export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=16${ASAN_OPTIONS:+:$ASAN_OPTIONS}"
 failed=
 for name in "$@"; do
     cmake --build "$build" --target "fuzz_$name" > "$build/fuzz_$name.build" 2>&1 || {
@@ -35,20 +45,24 @@ for name in "$@"; do
         exit 1
     }
     seeds=tests/fuzz/corpus/$name
-    found=$build/corpus/$name
+    found=build/fuzz/corpus/$name
     mkdir -p "$found"
     [ -d "$seeds" ] || seeds=
     options=
     timeout=10
     malloc=512
-    length=65536
+    length=4096
     case $name in
     cmdline)
         options=-detect_leaks=0 # a run ends in the middle of main
-        length=2048
+        length=1024
+        ;;
+    grammar) # long texts are looked at with comparisons traced
+        [ $plain = OFF ] || length=512
         ;;
     vdb) # the reader has limits of its own
         seeds="$seeds tests/frozen/vdb"
+        length=65536
         timeout=60
         malloc=0
         ;;

@@ -46,7 +46,7 @@ typedef struct shape_budget_choice {
     shape_march_work work; /* done to find this */
 } shape_budget_choice;
 
-/* Chooses steps, light cells and octaves so that the marched picture is within `error` (1e-4 to 1) of the same march with all
+/* Chooses steps, light cells and octaves so that the marched picture is within `allowed` (1e-4 to 1) of the same march with all
  * octaves, ever more steps and light grids of 48 cells, the default, at the least cost. What such a grid itself misses of the
  * reference is not in it. It looks at a few hundred of the picture's rays: with ever
  * more steps, until they no longer change, and with small light grids, whose changes tell how large one will do. options give
@@ -54,20 +54,20 @@ typedef struct shape_budget_choice {
  * for any number of threads. The caller frees *choice by shape_budget_free, also after an error. Errors: the checks of view,
  * light and options, memory, SHAPE_ERROR_ARGUMENT for another light or stepping. */
 shape_status shape_budget_march(const shape_volume *volume, const shape_view *view, const shape_light *light,
-                                const shape_march_options *options, double error, shape_budget_choice *choice,
-                                shape_error *error_text);
+                                const shape_march_options *options, double allowed,
+                                shape_budget_choice *choice, shape_error *error);
 void shape_budget_free(shape_budget_choice *choice);
 
 /* Puts a choice into effect: octaves into the volume (once), the rest into options, which then point into *choice. */
 void shape_budget_apply(const shape_budget_choice *choice, shape_volume *volume,
                         shape_march_options *options);
 
-/* The largest voxel [m] of a fog volume whose picture, marched, is within `error` of that of the density itself, and the
+/* The largest voxel [m] of a fog volume whose picture, marched, is within `allowed` of that of the density itself, and the
  * error predicted for it. Voxels are tried from the view's footprint on: eight pixels at the nearest cloud, then ever half
  * as large. *seen: whether the view shows any cloud; if not, nothing else is set. Errors as above. */
 shape_status shape_budget_voxel(const shape_volume *volume, const shape_view *view, const shape_light *light,
-                                double error, double *edge, double *predicted, bool *seen,
-                                shape_error *error_text);
+                                double allowed, double *edge, double *predicted, bool *seen,
+                                shape_error *error);
 
 #ifdef __cplusplus
 }
