@@ -84,7 +84,7 @@ static shape_status parse(scene_reader *r, const void *bytes, size_t size, json_
 shape_status shape_scene_decode(const void *bytes, size_t size, const char *name, shape_scene **scene,
                                 shape_error *error)
 {
-    shape_error unwanted;
+    shape_error unwanted = {SHAPE_OK, ""};
     scene_reader r = {.name = name, .error = error ? error : &unwanted};
     shape_status status = check_limits(&r, bytes, size);
     if (status)
