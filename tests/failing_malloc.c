@@ -1,9 +1,14 @@
+#define _GNU_SOURCE /* dl_iterate_phdr, RTLD_NEXT */
 /* To be preloaded: from the first call of poptGetContext on (where a program begins to work; what libraries do before
  * that is not its), the allocation of number NEPHELE_FAIL, counted from 0, fails, whoever asks: the program, libpng, zlib,
- * OpenEXR, jansson, popt, C++. Without it none fails. NEPHELE_COUNT names a file that gets the number of allocations. */
+ * OpenEXR, jansson, popt, C++. Without it none fails. NEPHELE_COUNT names a file that gets the number of allocations.
+ * NEPHELE_OWN: only what the program's own code asks for counts, not what libraries do (a graphics driver asks a hundred
+ * thousand times, and ends the program where it gets nothing). */
 #include <dlfcn.h>
 #include <errno.h>
+#include <link.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -16,11 +21,33 @@ void *memalign(size_t alignment, size_t size);
 
 static long failing = -1, asked;
 static int counting;
+static uintptr_t own_from, own_to; /* the program's addresses; 0, 0: whoever asks */
 
-static int refuse(void)
+static int refuse(const void *caller)
 {
-    return __atomic_load_n(&counting, __ATOMIC_RELAXED) &&
-           __atomic_fetch_add(&asked, 1, __ATOMIC_RELAXED) == failing;
+    if (!__atomic_load_n(&counting, __ATOMIC_RELAXED))
+        return 0;
+    if (own_to && ((uintptr_t)caller < own_from || (uintptr_t)caller >= own_to))
+        return 0;
+    return __atomic_fetch_add(&asked, 1, __ATOMIC_RELAXED) == failing;
+}
+
+#define REFUSE() refuse(__builtin_return_address(0))
+
+/* The first of the loaded objects is the program. */
+static int find_program(struct dl_phdr_info *info, size_t size, void *data)
+{
+    (void)size;
+    (void)data;
+    own_from = UINTPTR_MAX;
+    for (int i = 0; i < info->dlpi_phnum; i++)
+        if (info->dlpi_phdr[i].p_type == PT_LOAD) {
+            uintptr_t from = info->dlpi_addr + info->dlpi_phdr[i].p_vaddr,
+                      to = from + info->dlpi_phdr[i].p_memsz;
+            own_from = from < own_from ? from : own_from;
+            own_to = to > own_to ? to : own_to;
+        }
+    return 1;
 }
 
 static void *none(void)
@@ -31,32 +58,32 @@ static void *none(void)
 
 void *malloc(size_t size)
 {
-    return refuse() ? none() : __libc_malloc(size);
+    return REFUSE() ? none() : __libc_malloc(size);
 }
 
 void *calloc(size_t count, size_t size)
 {
-    return refuse() ? none() : __libc_calloc(count, size);
+    return REFUSE() ? none() : __libc_calloc(count, size);
 }
 
 void *realloc(void *old, size_t size)
 {
-    return refuse() ? none() : __libc_realloc(old, size);
+    return REFUSE() ? none() : __libc_realloc(old, size);
 }
 
 void *memalign(size_t alignment, size_t size)
 {
-    return refuse() ? none() : __libc_memalign(alignment, size);
+    return REFUSE() ? none() : __libc_memalign(alignment, size);
 }
 
 void *aligned_alloc(size_t alignment, size_t size)
 {
-    return memalign(alignment, size);
+    return REFUSE() ? none() : __libc_memalign(alignment, size);
 }
 
 int posix_memalign(void **block, size_t alignment, size_t size)
 {
-    void *made = memalign(alignment, size);
+    void *made = REFUSE() ? NULL : __libc_memalign(alignment, size);
     if (!made)
         return ENOMEM;
     *block = made;
@@ -69,6 +96,8 @@ void *poptGetContext(const char *name, int argc, const char **argv, const void *
     *(void **)&real = dlsym(RTLD_NEXT, "poptGetContext");
     const char *text = getenv("NEPHELE_FAIL");
     failing = text ? atol(text) : -1;
+    if (getenv("NEPHELE_OWN"))
+        dl_iterate_phdr(find_program, NULL);
     counting = 1;
     return real ? real(name, argc, argv, options, flags) : NULL;
 }

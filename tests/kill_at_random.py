@@ -129,6 +129,8 @@ def main():
             if not kill_once(place, name, new, duration * (start + (1.05 - start) * chance.random())):
                 continue
             counts["kills"] += 1
+            if counts["kills"] % 100 == 0:
+                print("cli_kill: %d kills" % counts["kills"], flush=True)
             found = read(target)
             if found not in (before, after):
                 sys.exit("cli_kill: %s is neither the old file nor the new one (seed %d, attempt %d)" % (name, seed, attempt))

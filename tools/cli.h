@@ -86,9 +86,9 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
 /* `program: text (...)` on standard error. */
 void cli_error(const char *format, ...) SHAPE_PRINTF(1, 2);
 /* The same, then exit 1. */
-void cli_fail(const char *format, ...) SHAPE_PRINTF(1, 2);
+__attribute__((noreturn)) void cli_fail(const char *format, ...) SHAPE_PRINTF(1, 2);
 /* The same, then exit 2: for combinations of options that make no sense. */
-void cli_wrong(const char *format, ...) SHAPE_PRINTF(1, 2);
+__attribute__((noreturn)) void cli_wrong(const char *format, ...) SHAPE_PRINTF(1, 2);
 /* Whether the command line gave an option by this name, and the first of a table that it gave, or NULL. */
 bool cli_given(const char *name);
 const char *cli_given_of(const cli_option *table);

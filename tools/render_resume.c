@@ -225,7 +225,7 @@ static int read_state(shape_pathtrace_pixel *pixels, int most)
 {
     shape_error error;
     unsigned char *bytes;
-    uint8_t sum[SHA256_DIGEST_LENGTH];
+    uint8_t sum[SHA256_DIGEST_LENGTH] = {0};
     size_t size;
     cli_check(shape_file_read(path, SIZE_MAX / 2, &bytes, &size, &error), &error);
     if (size < MAGIC || memcmp(bytes, magic, MAGIC))

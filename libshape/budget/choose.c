@@ -278,8 +278,9 @@ static shape_status try_light(chooser *c, int steps, probe_picture *pictures, sh
             break;
     }
     free(spare);
-    for (int k = c->tried; k > 0 && k < CELL_RUNGS; k++)
-        c->cell_cost[k] = c->cell_cost[k - 1] * pow((double)cell_rungs[k] / cell_rungs[k - 1], 3);
+    for (int k = 1; k < CELL_RUNGS; k++)
+        if (k >= c->tried)
+            c->cell_cost[k] = c->cell_cost[k - 1] * pow((double)cell_rungs[k] / cell_rungs[k - 1], 3);
     return status;
 }
 

@@ -18,7 +18,7 @@ shape_status shape_budget_change(const float *picture, const float *reference, i
 static void pick(const shape_view *view, int i, int tries, double *x, double *y)
 {
     long pixels = (long)view->width * view->height;
-    if (pixels <= tries) {
+    if (pixels > 0 && pixels <= tries) {
         /* A step without a common divisor visits each pixel once, in an order that is spread over the picture. */
         long step = (long)(0.6180339887498949 * (double)pixels) | 1, a, b, rest;
         for (;; step += 2) {

@@ -89,7 +89,7 @@ static shape_status parse(scene_reader *r, const void *bytes, size_t size, json_
 shape_status shape_scene_decode(const void *bytes, size_t size, const char *name, shape_scene **scene,
                                 shape_error *error)
 {
-    shape_error unwanted;
+    shape_error unwanted = {SHAPE_OK, ""};
     scene_reader r = {.name = name, .error = error ? error : &unwanted};
     if (shape_scene_is_picture(bytes, size) && !scene_find_in_picture(&bytes, &size))
         return scene_wrong(&r, "a picture that holds no scene (those that neph-view's window writes hold one)");

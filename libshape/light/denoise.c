@@ -96,7 +96,7 @@ static float usual_variance(const picture *p, int x, int y, size_t c)
 {
     const float little =
         0.02f; /* of the mean: a cloud's middle one is more, however rare its bright paths are */
-    float sorted[9], sum = 0;
+    float sorted[9] = {0}, sum = 0;
     int count = 0;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {

@@ -118,7 +118,8 @@ void shadow_pairs_free(shadow_pairs *pairs)
 static double ball(const shape_volume_cloud *c, shape_dvec3 *centre)
 {
     double radius2 = 0;
-    shape_dvec3 half;
+    shape_dvec3 half = {0, 0, 0};
+    *centre = half;
     for (int i = 0; i < 3; i++) {
         double low = (&c->box.min.x)[i], high = (&c->box.max.x)[i];
         (&centre->x)[i] = 0.5 * (low + high);

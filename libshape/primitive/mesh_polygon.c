@@ -99,7 +99,7 @@ void shape_polygon_cut(const shape_dvec3 *points, const uint32_t *corners, size_
         return;
     }
     double(*flat)[2] = (double(*)[2])scratch;
-    uint32_t *next = (uint32_t *)(scratch + 2 * count), *previous = next + count;
+    uint32_t *next = (void *)(scratch + 2 * count), *previous = next + count;
     for (size_t i = 0; i < count; i++) {
         shape_dvec3 p = shape_dvec3_sub(points[corners[i]], points[corners[0]]);
         flat[i][0] = shape_dvec3_dot(p, across);

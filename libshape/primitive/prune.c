@@ -188,7 +188,7 @@ shape_status shape_primitives_prune(shape_primitives *list, size_t *removed, sha
     shape_status status = shape_reach_build(&tree, list, error);
     if (status)
         return status;
-    unsigned char *marked = malloc(count);
+    unsigned char *marked = calloc(count, 1);
     if (!marked) {
         shape_reach_free(&tree);
         return shape_error_memory(error);

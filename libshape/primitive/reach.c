@@ -239,7 +239,7 @@ static void fill_blocks(shape_reach *tree, const item *items)
             size_t i = b * WIDTH + k;
             const item *from = &items[i < tree->count ? i : tree->count - 1];
             for (int axis = 0; axis < 3; axis++)
-                block->position[axis][k] = from->position[axis];
+                block->position[axis][k] = from->position[axis]; /* NOLINT: all items are filled */
             block->reach[k] = i < tree->count ? from->reach : -1;
             block->number[k] = from->number;
         }
