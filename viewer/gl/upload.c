@@ -17,7 +17,9 @@ GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, 
     enum { WIDTH = 2048 };
     GLint largest = 2048;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    size_t rows = texels ? (texels + WIDTH - 1) / WIDTH : 1;
+    size_t rows = 1;
+    while (rows * WIDTH < texels) /* a power of two: Mesa compiles shaders anew where that changes */
+        rows *= 2;
     if (rows > (size_t)largest) {
         *status = shape_error_set(error, SHAPE_ERROR_LIMIT,
                                   "%zu texels are more than this GPU's textures hold (%zu)", texels,
@@ -189,6 +191,8 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
     free(roots);
     glGenTextures(1, &scene->clouds);
     glBindTexture(GL_TEXTURE_2D, scene->clouds);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, GL_RECORD_TEXELS, (GLsizei)count + 1, 0, GL_RGBA, GL_FLOAT,
+                 NULL);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return SHAPE_OK;
@@ -232,8 +236,8 @@ void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape
     }
     scene->shown_count = count;
     glBindTexture(GL_TEXTURE_2D, scene->clouds);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, GL_RECORD_TEXELS, count ? count : 1, 0, GL_RGBA, GL_FLOAT,
-                 rows);
+    if (count)
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, GL_RECORD_TEXELS, count, GL_RGBA, GL_FLOAT, rows);
 }
 
 void gl_scene_put(gl_scene *scene, int cloud, int texel, double x, double y, double z, double w)
