@@ -46,6 +46,7 @@ for options in "--paper-lod" "--fps 3" "--day-speed 2" "--latitude 3" "--declina
     refused 2 "belongs\|needs" "$bin/neph-view" c.neph $small --headless --samples 1 $options -o x.pfm
 done
 refused 2 "bench" "$bin/neph-view" c.neph $small --bench 1 --samples 3
+refused 2 "needs --bench" "$bin/neph-view" c.neph $small --headless --bench-frames x.csv -o x.pfm
 refused 2 "holds no alpha" "$bin/neph-view" c.neph $small --frames 0..1 --alpha -o f.%d.pfm
 refused 2 "a .neph or a grammar" "$bin/neph-view" c.neph $small --headless --morph "$vdb" -o x.pfm
 [ -z "$(find . -name 'f.*')" ] || fail "a frame was written before the mistake was told"

@@ -71,9 +71,17 @@ values=$(tail -c $((32 * 18 * 12)) sky.pfm | od -An -v -tfF -w12 | sort -u | tr 
 [ "$values" = " 0.25 0.5 0.75" ] || fail "the sky behind an empty cloud is: $values"
 
 # --- a flight in and out of the cloud: every value a number, and it moves on; only as a bench
-"$bin/neph-view" spiral.neph -q --bench 6 --flight --size 32x18 --light-grid 8 >flight.json || fail "--flight failed"
+"$bin/neph-view" spiral.neph -q --bench 6 --flight --size 32x18 --light-grid 8 --bench-frames flight.csv >flight.json ||
+    fail "--flight failed"
 grep -q '"wrong_values": 0' flight.json || fail "a flight's picture holds no number: $(cat flight.json)"
 grep -q '"largest_jump": 0.0,*$' flight.json && fail "the flight stands still"
+# a row a frame, of which the largest jump is the report's, and the clouds that came into use are all of them
+[ "$(wc -l <flight.csv)" -eq 7 ] || fail "--bench-frames: not 6 rows below their names: $(cat flight.csv)"
+awk -F, -v json="$(sed -n 's/.*"\(largest_jump\|clouds_lit\)": *\([0-9.e+-]*\).*/\2/p' flight.json | tr '\n' ' ')" '
+    NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i }
+    NR > 1 { jump = $at["jump"] > jump ? $at["jump"] : jump; lit += $at["clouds_lit"] }
+    END { split(json, said, " "); exit !(lit == said[1] && jump > said[2] - 1e-5 && jump < said[2] + 1e-5) }' flight.csv ||
+    fail "--bench-frames does not agree with the report: $(cat flight.csv flight.json)"
 
 # --- bench: every key of the contract, numbers in their order
 "$bin/neph-view" spiral.neph -q --bench 3 --size 32x18 --light-grid 8 -o last.png >bench.json || fail "--bench failed"

@@ -1,10 +1,8 @@
 /* neph-view: a cloud in a window, or as a picture without one. */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "cli.h"
 #include "cli_picture.h"
@@ -22,7 +20,8 @@ static bool headless, paper_lod, flight;
 static int method, maker = -1;
 static const char *const makers[] = {"neph-gauss", "neph-meta", "neph-layer"};
 static int64_t bench_frames, largest, samples = 32, light_grid = 48;
-static const char *shader_folder, *morph_path;
+static const char *const method_names[] = {"default", "exact", "paper", "paper-ndt"};
+static const char *shader_folder, *morph_path, *frames_file;
 static bool bench_given, light_grid_given, samples_given, error_given, frames_given, overwrite, alpha,
     day_given, decay_given, time_given;
 static double allowed_error, split_share = 0.5, frame_range[2], fps = 25, moment_time, decay_range[2];
@@ -48,6 +47,8 @@ static const cli_option view_options[] = {
      "draw N frames on an orbit of half a degree a frame, print times as JSON", &bench_given, true},
     {"flight", 0, CLI_FLAG, &flight, 0, 0, NULL,
      "--bench: fly straight on through the target and out behind it, rather than round it", NULL, true},
+    {"bench-frames", 0, CLI_TEXT, &frames_file, 0, 0, "FILE",
+     "--bench: also write a row a frame: times, work, change, camera (.csv)", NULL, true},
     {"paper-lod", 0, CLI_FLAG, &paper_lod, 0, 0, NULL,
      "paper methods: the printed distance formula for the step, not 0.1", NULL, true},
     {"alpha", 0, CLI_FLAG, &alpha, 0, 0, NULL,
@@ -129,15 +130,6 @@ static const cli_program program = {
     .max_arguments = 2,
     .groups = groups};
 
-static double now_ms(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
-}
-
-static const char *const method_names[] = {"default", "exact", "paper", "paper-ndt"};
-
 /* Reads the picture from the renderer and writes it. */
 static void write_picture(const view_job *job, const shape_view *view, shape_gl_renderer *renderer,
                           const cli_common *common)
@@ -148,117 +140,6 @@ static void write_picture(const view_job *job, const shape_view *view, shape_gl_
     cli_check(view_encode(renderer, view, job->alpha, common->output, &bytes, &size, &error), &error);
     cli_write(common, bytes, size, true);
     free(bytes);
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static size_t count_primitives(const shape_volume *volume)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < volume->cloud_count; i++)
-        count += shape_primitives_count(volume->clouds[i].list);
-    return count;
-}
-
-/* What a flight's pictures say beside their times. */
-typedef struct bench_pictures {
-    double slowest;      /* frame but the first, which makes light and voxels [ms] */
-    long wrong;          /* values that are no number, infinite or negative */
-    double largest_jump; /* between two pictures: rms of the difference over the mean of both */
-} bench_pictures;
-
-/* Compares a picture with the one before it, which it then replaces. */
-static void look_at(bench_pictures *seen, const float *rgba, float *last, size_t pixels, bool first)
-{
-    double sum = 0, mean = 0;
-    for (size_t i = 0; i < 4 * pixels; i++) {
-        seen->wrong += !(rgba[i] >= 0 && rgba[i] < INFINITY);
-        sum += ((double)rgba[i] - (double)last[i]) * ((double)rgba[i] - (double)last[i]);
-        mean += 0.5 * ((double)rgba[i] + (double)last[i]);
-    }
-    double jump = sqrt(sum / (4 * (double)pixels)) / fmax(mean / (4 * (double)pixels), 1e-9);
-    if (!first)
-        seen->largest_jump = fmax(seen->largest_jump, jump);
-    memcpy(last, rgba, 4 * pixels * sizeof *last);
-}
-
-/* Frame i of n: half a degree further round the target; or, in a flight, straight on through the target and out on its far
- * side, looking ahead. */
-static void move_on(shape_view *view, const shape_view *from, int64_t i, int64_t n)
-{
-    if (!flight) {
-        view_orbit(view, 0.5);
-        return;
-    }
-    shape_dvec3 way = shape_dvec3_sub(from->target, from->eye);
-    double part = 2 * (double)i / (double)(n > 1 ? n - 1 : 1);
-    view->eye = shape_dvec3_add(from->eye, shape_dvec3_scale(way, part));
-    view->target = shape_dvec3_add(view->eye, way);
-}
-
-static void print_bench(const view_job *job, shape_gl_costs costs, double first_ms, double *times, int count,
-                        const bench_pictures *seen)
-{
-    qsort(times, (size_t)count, sizeof *times, compare_doubles);
-    int p95 = (int)ceil(0.95 * count) - 1;
-    json_t *report = json_pack(
-        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:I, s:f, s:f, s:I, s:I, s:I, s:f}",
-        "method", method_names[job->options.method], "size", job->view.width, job->view.height, "frames",
-        count, "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms",
-        costs.bake_ms, "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2],
-        "p95", times[p95], "max", count > 1 ? seen->slowest : times[0], "primitives",
-        (json_int_t)count_primitives(job->volume), "steps_per_pixel", costs.steps_per_pixel,
-        "fetches_per_pixel", costs.fetches_per_pixel, "clouds_lit", (json_int_t)costs.lit_clouds,
-        "clouds_baked", (json_int_t)costs.baked_clouds, "wrong_values", (json_int_t)seen->wrong,
-        "largest_jump", seen->largest_jump);
-    if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) ||
-        putchar('\n') == EOF)
-        cli_fail("standard output: cannot write");
-    json_decref(report);
-}
-
-/* Draws all frames, each to its end, and prints their times. */
-static void bench(view_job *job, shape_gl_renderer *renderer, double started, const cli_common *common)
-{
-    shape_error error;
-    shape_view view = job->view;
-    double *times = calloc((size_t)bench_frames, sizeof *times), first = 0;
-    size_t pixels = (size_t)job->view.width * (size_t)job->view.height;
-    float *rgba = malloc(pixels * 4 * sizeof *rgba), *last = calloc(pixels * 4, sizeof *last);
-    bench_pictures seen = {0};
-    if (!times || !rgba || !last)
-        cli_fail("not enough memory");
-    double steps = 0, fetches = 0;
-    for (int64_t i = 0; i < bench_frames; i++) {
-        double start = now_ms();
-        cli_check(shape_gl_draw_moving(renderer, &view, &error), &error);
-        shape_gl_finish();
-        times[i] = now_ms() - start;
-        if (i == 0)
-            first = now_ms() - started;
-        else
-            seen.slowest = fmax(seen.slowest, times[i]);
-        cli_progress("drawing", (double)(i + 1) / (double)bench_frames);
-        cli_check(shape_gl_read(renderer, rgba, &error), &error);
-        steps += shape_gl_get_costs(renderer).steps_per_pixel;
-        fetches += shape_gl_get_costs(renderer).fetches_per_pixel;
-        look_at(&seen, rgba, last, pixels, i == 0);
-        if (i + 1 < bench_frames)
-            move_on(&view, &job->view, i + 1, bench_frames);
-    }
-    free(rgba);
-    free(last);
-    shape_gl_costs costs = shape_gl_get_costs(renderer);
-    costs.steps_per_pixel = steps / (double)bench_frames;
-    costs.fetches_per_pixel = fetches / (double)bench_frames;
-    if (common->output_given)
-        write_picture(job, &view, renderer, common);
-    print_bench(job, costs, first, times, (int)bench_frames, &seen);
-    free(times);
 }
 
 /* A picture to --error, and what was chosen for it. */
@@ -307,7 +188,12 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     cli_check(shape_gl_load(renderer, job->volume, &error), &error);
     cli_check(shape_gl_light(renderer, &light, &error), &error);
     if (bench_given) {
-        bench(job, renderer, started, common);
+        const view_bench plan = {(int)bench_frames, flight, method_names[job->options.method], frames_file,
+                                 started};
+        shape_view last = view;
+        cli_check(view_bench_run(job, renderer, &plan, &last, &error), &error);
+        if (common->output_given)
+            write_picture(job, &last, renderer, common);
     } else {
         const view_plan plan = {
             .samples = job->samples, .largest = job->largest, .alpha = job->alpha, .progress = cli_progress};
@@ -348,6 +234,8 @@ static void check_command(const cli_common *common, view_frames *frames)
         cli_wrong("--alpha needs --headless or --frames");
     if (flight && !bench_given)
         cli_wrong("--flight needs --bench");
+    if (frames_file && !bench_given)
+        cli_wrong("--bench-frames needs --bench");
     if (bench_given && frames_given)
         cli_wrong("--bench and --frames are two ways to draw (give one of them)");
     if (overwrite && !frames_given)
@@ -549,7 +437,7 @@ static char *find_compared(view_job *job, const shape_scene *scene)
 
 int main(int argc, char **argv)
 {
-    double started = now_ms();
+    double started = view_now_ms();
     cli_common common;
     course = view_course_defaults();
     cli_parse(&program, argc, argv, &common);
@@ -600,7 +488,7 @@ int main(int argc, char **argv)
         cli_check(view_frames_draw(&job, &frames, &error), &error);
     } else if (headless || bench_given) {
         cli_check(view_job_place(&job, job.time, &error), &error);
-        job.load_ms = now_ms() - started;
+        job.load_ms = view_now_ms() - started;
         draw_headless(&job, started, &common);
     } else {
         cli_check(view_window(&job, save_scene, &error), &error);

@@ -117,6 +117,21 @@ shape_status view_frames_check(const view_frames *frames, shape_error *error);
 /* Draws the frames that are not there yet, each by itself. */
 shape_status view_frames_draw(view_job *job, const view_frames *frames, shape_error *error);
 
+/* bench.c: a moving view, measured. */
+typedef struct view_bench {
+    int frames;
+    bool flight;             /* straight on through the target, rather than round it */
+    const char *method;      /* its name */
+    const char *frames_file; /* a row a frame is written there (CSV); NULL: none */
+    double started;          /* when the program began, by view_now_ms */
+} view_bench;
+
+double view_now_ms(void);
+/* Draws job->view's frames, each to its end, and prints their times as JSON (docs/benchmarks.md). *view gets the last one's;
+ * the renderer holds its picture. */
+shape_status view_bench_run(const view_job *job, shape_gl_renderer *renderer, const view_bench *plan,
+                            shape_view *view, shape_error *error);
+
 /* camera.c: the orbit and fly camera. Angles in radians; the view it writes is what renderers take. */
 typedef struct view_camera {
     shape_dvec3 eye, target;

@@ -150,14 +150,17 @@ struct gl_light {
 };
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
-/* Takes over what another light has of clouds that this one has none of; before it is uploaded. */
-shape_status gl_light_add(gl_light *light, const gl_light *from, int texture_limit, shape_error *error);
+/* What one set has, and of the other what it has not. The caller drops *made. */
+shape_status gl_light_join(const gl_light *first, const gl_light *second, int texture_limit, gl_light **made,
+                           shape_error *error);
 void gl_light_upload(gl_light *light); /* the values as they are */
 void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *volume);
 /* Composes the light of the shown clouds for an eye and uploads it. */
-void gl_light_compose(gl_light *light, const shape_gl_renderer *renderer, shape_dvec3 eye);
-gl_fit gl_light_fit(const gl_light *light, const gl_order *order); /* of the clouds in sight, the worst */
-void gl_light_drop(gl_light *light);                               /* NULL is allowed */
+shape_status gl_light_compose(gl_light *light, shape_gl_renderer *renderer, shape_dvec3 eye,
+                              shape_error *error);
+/* Of the clouds that the view sees, its pyramid made `wider` times as wide and high, the worst. */
+gl_fit gl_light_fit(const gl_light *light, const gl_order *order, double wider);
+void gl_light_drop(gl_light *light); /* NULL is allowed */
 
 /* One cloud's density. */
 typedef struct gl_dense {
@@ -166,24 +169,48 @@ typedef struct gl_dense {
     float
         wanted; /* voxel that the view asked for [m, cloud's frame]; INFINITY: a first one, to be replaced */
     bool at_limit; /* no finer one fits into the limit of voxels */
+    /* Of the drawing thread: where it is in the pool [voxels], and how many of its layers have been sent. */
+    bool resident, kept;
+    int place[3], sent;
 } gl_dense;
 
-/* Baked densities of clouds, in one atlas. Shared like gl_light. */
+/* Baked densities of clouds. Shared like gl_light. */
 struct gl_baked {
-    int uses, count, size[3];
+    int uses, count;
     int made; /* clouds that were baked for it, not taken over */
     gl_dense **dense;
-    gl_box *boxes;
-    uint8_t *atlas; /* until it is uploaded */
-    GLuint texture;
+    GLuint texture; /* the pool's */
 };
 
 shape_status gl_baked_make(const gl_order *order, gl_baked **made, shape_error *error); /* needs no OpenGL */
-shape_status gl_baked_add(gl_baked *baked, const gl_baked *from, int texture_limit, shape_error *error);
-void gl_baked_upload(gl_baked *baked);
+/* What one set has, and of the other what it has not. The caller drops *made. */
+shape_status gl_baked_join(const gl_baked *first, const gl_baked *second, gl_baked **made,
+                           shape_error *error);
 void gl_baked_place(const gl_baked *baked, gl_scene *scene);
-gl_fit gl_baked_fit(const gl_baked *baked, const gl_order *order);
-void gl_baked_drop(gl_baked *baked); /* NULL is allowed */
+/* Of the clouds that the view sees, its pyramid made `wider` times as wide and high, the worst. */
+gl_fit gl_baked_fit(const gl_baked *baked, const gl_order *order, double wider);
+void gl_baked_drop(gl_baked *baked);       /* NULL is allowed */
+gl_dense *gl_dense_share(gl_dense *dense); /* NULL is allowed, here and below */
+void gl_dense_drop(gl_dense *dense);
+
+/* --- pool.c --- */
+
+/* Zero it before first use. */
+typedef struct gl_pool {
+    GLuint texture;
+    int size[3];      /* texels */
+    uint8_t *taken;   /* a flag a cell of 16^3 texels */
+    gl_dense **items; /* what is in it */
+    size_t count, capacity, resent_bytes;
+} gl_pool;
+
+/* Finds places for those of the set that have none; nothing is sent yet. */
+shape_status gl_pool_place(gl_pool *pool, const gl_baked *baked, int texture_limit, shape_error *error);
+/* Sends what has not been sent of a placed set, about `most` bytes of it; adds to *bytes. Returns whether all is there. */
+bool gl_pool_send(gl_pool *pool, const gl_baked *baked, size_t most, size_t *bytes);
+/* Throws out what is in none of the sets, some of which may be NULL. */
+void gl_pool_keep(gl_pool *pool, const gl_baked *const sets[], int count);
+void gl_pool_free(gl_pool *pool);
 
 typedef struct gl_grids {
     gl_light *light;
@@ -245,6 +272,9 @@ struct shape_gl_renderer {
     gl_scene scene;
     gl_grids grids, last_grids; /* the last ones are faded out while fade_left frames remain */
     gl_refinement *refinement;  /* what is being made on a thread, or NULL */
+    gl_grids coming;            /* what it has made, while that is sent to the GPU; NULL where nothing is */
+    double coming_ms[2];        /* how long light and baked density of it took */
+    gl_pool pool;
     int fade_left;
     bool light_changed, refined;
     gl_preview preview;

@@ -1,5 +1,5 @@
-/* The baked densities of the clouds in sight in one atlas, each with voxels as fine as a view needs. A cloud's stays until
- * a view needs another. */
+/* The baked densities of the clouds in sight, each with voxels as fine as a view needs. A cloud's stays until a view needs
+ * another. */
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -8,22 +8,7 @@
 #include "gl_private.h"
 #include "shape/bake.h"
 
-/* Copies a box of cells of `bytes` bytes each into an atlas. */
-static void copy_box(const gl_box *box, const void *cells, size_t bytes, const int size[3], void *atlas)
-{
-    size_t row = (size_t)box->size[0] * bytes;
-    for (int z = 0; z < box->size[2]; z++)
-        for (int y = 0; y < box->size[1]; y++) {
-            size_t from = ((size_t)z * (size_t)box->size[1] + (size_t)y) * row;
-            size_t to = (((size_t)(box->place[2] + z) * (size_t)size[1] + (size_t)(box->place[1] + y)) *
-                             (size_t)size[0] +
-                         (size_t)box->place[0]) *
-                        bytes;
-            memcpy((char *)atlas + to, (const char *)cells + from, row);
-        }
-}
-
-static void drop_dense(gl_dense *dense)
+void gl_dense_drop(gl_dense *dense)
 {
     if (!dense || atomic_fetch_sub(&dense->uses, 1) > 1)
         return;
@@ -31,7 +16,7 @@ static void drop_dense(gl_dense *dense)
     free(dense);
 }
 
-static gl_dense *share(gl_dense *dense)
+gl_dense *gl_dense_share(gl_dense *dense)
 {
     if (dense)
         atomic_fetch_add(&dense->uses, 1);
@@ -42,12 +27,9 @@ void gl_baked_drop(gl_baked *baked)
 {
     if (!baked || --baked->uses)
         return;
-    glDeleteTextures(1, &baked->texture);
     for (int i = 0; i < baked->count; i++)
-        drop_dense(baked->dense[i]);
+        gl_dense_drop(baked->dense[i]);
     free(baked->dense);
-    free(baked->boxes);
-    free(baked->atlas);
     free(baked);
 }
 
@@ -148,7 +130,7 @@ static int choose(const gl_order *order, const float *wanted, size_t each, gl_ba
             good = kept <= order->bake_voxels / 2;
         }
         if (good)
-            baked->dense[i] = share(last);
+            baked->dense[i] = gl_dense_share(last);
         else
             voxels[i] = voxel;
         chosen += voxels[i] > 0;
@@ -212,48 +194,29 @@ static shape_status bake_all(const gl_order *order, gl_baked *baked, float *want
     return status;
 }
 
-/* All grids into one atlas, to be uploaded. */
-static shape_status pack(gl_baked *baked, int texture_limit, shape_error *error)
+static shape_status create(int count, gl_baked **made, shape_error *error)
 {
-    int *size = baked->size;
-    for (int i = 0; i < baked->count; i++)
-        memset(baked->boxes[i].size, 0, sizeof baked->boxes[i].size);
-    for (int i = 0; i < baked->count; i++)
-        if (baked->dense[i])
-            memcpy(baked->boxes[i].size, baked->dense[i]->baked.size, sizeof baked->boxes[i].size);
-    shape_status status = gl_atlas_pack(baked->boxes, baked->count, texture_limit, size, error);
-    if (status)
-        return status;
-    free(baked->atlas);
-    baked->atlas = calloc((size_t)size[0] * (size_t)size[1] * (size_t)size[2], 2);
-    if (!baked->atlas)
+    gl_baked *baked = calloc(1, sizeof *baked);
+    if (baked)
+        baked->dense = calloc((size_t)count + 1, sizeof(gl_dense *));
+    if (!baked || !baked->dense) {
+        free(baked);
         return shape_error_memory(error);
-    for (int i = 0; i < baked->count; i++)
-        if (baked->dense[i])
-            copy_box(&baked->boxes[i], baked->dense[i]->baked.voxels, 2, size, baked->atlas);
+    }
+    baked->uses = 1;
+    baked->count = count;
+    *made = baked;
     return SHAPE_OK;
 }
 
 shape_status gl_baked_make(const gl_order *order, gl_baked **made, shape_error *error)
 {
-    size_t count = order->volume->cloud_count;
-    gl_baked *baked = calloc(1, sizeof *baked);
+    const size_t count = order->volume->cloud_count;
+    gl_baked *baked = NULL;
     float *wanted = calloc(2 * count + 1, sizeof *wanted);
-    if (!baked || !wanted) {
-        free(baked);
-        free(wanted);
-        return shape_error_memory(error);
-    }
-    baked->uses = 1;
-    baked->dense = calloc(count + 1, sizeof(gl_dense *));
-    baked->boxes = calloc(count + 1, sizeof *baked->boxes);
-    shape_status status = baked->dense && baked->boxes ? SHAPE_OK : shape_error_memory(error);
-    if (!status) {
-        baked->count = (int)count;
-        status = bake_all(order, baked, wanted, wanted + count, error);
-    }
+    shape_status status = wanted ? create((int)count, &baked, error) : shape_error_memory(error);
     if (!status)
-        status = pack(baked, order->texture_limit, error);
+        status = bake_all(order, baked, wanted, wanted + count, error);
     free(wanted);
     if (status) {
         gl_baked_drop(baked);
@@ -263,43 +226,35 @@ shape_status gl_baked_make(const gl_order *order, gl_baked **made, shape_error *
     return SHAPE_OK;
 }
 
-shape_status gl_baked_add(gl_baked *baked, const gl_baked *from, int texture_limit, shape_error *error)
+shape_status gl_baked_join(const gl_baked *first, const gl_baked *second, gl_baked **made, shape_error *error)
 {
-    bool added = false;
-    for (int i = 0; i < baked->count; i++)
-        if (!baked->dense[i] && from->dense[i]) {
-            baked->dense[i] = share(from->dense[i]);
-            added = true;
-        }
-    return added ? pack(baked, texture_limit, error) : SHAPE_OK;
-}
-
-void gl_baked_upload(gl_baked *baked)
-{
-    baked->texture = gl_volume_texture(baked->size, GL_RG8, GL_RG, GL_UNSIGNED_BYTE, baked->atlas);
-    free(baked->atlas);
-    baked->atlas = NULL;
+    shape_status status = create(first->count, made, error);
+    for (int i = 0; i < first->count && !status; i++)
+        (*made)->dense[i] = gl_dense_share(first->dense[i] ? first->dense[i] : second->dense[i]);
+    if (!status)
+        (*made)->made = first->made;
+    return status;
 }
 
 void gl_baked_place(const gl_baked *baked, gl_scene *scene)
 {
     for (int i = 0; i < baked->count; i++) {
-        const int *place = baked->boxes[i].place;
         if (!baked->dense[i])
             continue;
+        const int *place = baked->dense[i]->place;
         const shape_baked *b = &baked->dense[i]->baked;
         gl_scene_put(scene, i, 18, place[0], place[1], place[2], 1 / (double)b->voxel);
         gl_scene_put(scene, i, 19, b->box.min.x, b->box.min.y, b->box.min.z, 0);
     }
 }
 
-gl_fit gl_baked_fit(const gl_baked *baked, const gl_order *order)
+gl_fit gl_baked_fit(const gl_baked *baked, const gl_order *order, double wider)
 {
     gl_fit fit = GL_FITS;
     shape_camera camera = shape_view_camera(&order->view);
     for (int i = 0; i < baked->count; i++) {
         const shape_volume_cloud *c = &order->volume->clouds[i];
-        if (!c->tree->count || !gl_in_sight(c, &camera, 1))
+        if (!c->tree->count || !gl_in_sight(c, &camera, wider))
             continue;
         gl_fit own = baked->dense[i] ? fit_of(baked->dense[i], wanted_voxel(c, &order->view)) : GL_MISSING;
         fit = own > fit ? own : fit;

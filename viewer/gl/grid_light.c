@@ -64,12 +64,13 @@ static int wanted_cells(const gl_order *order, size_t cloud)
     return (int)(cells + 0.5);
 }
 
-gl_fit gl_light_fit(const gl_light *light, const gl_order *order)
+gl_fit gl_light_fit(const gl_light *light, const gl_order *order, double wider)
 {
     gl_fit fit = GL_FITS;
     shape_camera camera = shape_view_camera(&order->view);
     for (int i = 0; i < light->count && !order->paper; i++) {
-        if (!gl_in_sight(&order->volume->clouds[i], &camera, 1))
+        const shape_volume_cloud *c = &order->volume->clouds[i];
+        if (!c->tree->count || !gl_in_sight(c, &camera, wider))
             continue;
         if (!light->lit[i])
             return GL_MISSING;
@@ -190,9 +191,13 @@ static shape_status pack(gl_light *light, int texture_limit, shape_error *error)
     for (int i = 0; i < light->count; i++)
         if (light->lit[i])
             memcpy(light->boxes[i].size, light->lit[i]->grid.size, sizeof light->boxes[i].size);
-    shape_status status = gl_atlas_pack(light->boxes, light->count, texture_limit, light->size, error);
+    shape_status status = gl_atlas_pack(light->boxes, light->count, texture_limit - 1, light->size, error);
     if (status)
         return status;
+    /* Never a power of two: Mesa compiles shaders anew where that changes. */
+    for (int axis = 0; axis < 3; axis++)
+        while ((light->size[axis] & (light->size[axis] - 1)) == 0)
+            light->size[axis]++;
     free(light->cells);
     light->cells = calloc(cell_count(light->size) * 4, sizeof *light->cells);
     if (!light->cells)
@@ -203,19 +208,31 @@ static shape_status pack(gl_light *light, int texture_limit, shape_error *error)
     return shaded ? gl_shade_pack(light, error) : SHAPE_OK;
 }
 
-shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error)
+static shape_status create(int count, gl_light **made, shape_error *error)
 {
-    size_t count = order->volume->cloud_count;
     gl_light *light = calloc(1, sizeof *light);
     if (!light)
         return shape_error_memory(error);
     light->uses = 1;
-    light->lit = calloc(count + 1, sizeof(gl_lit *));
-    light->boxes = calloc(count + 1, sizeof *light->boxes);
+    light->count = count;
+    light->lit = calloc((size_t)count + 1, sizeof(gl_lit *));
+    light->boxes = calloc((size_t)count + 1, sizeof *light->boxes);
+    if (light->lit && light->boxes) {
+        *made = light;
+        return SHAPE_OK;
+    }
+    light->count = 0;
+    gl_light_drop(light);
+    return shape_error_memory(error);
+}
+
+shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error)
+{
+    const size_t count = order->volume->cloud_count;
+    gl_light *light = NULL;
     int *cells = calloc(count + 1, sizeof *cells);
-    shape_status status = light->lit && light->boxes && cells ? SHAPE_OK : shape_error_memory(error);
+    shape_status status = cells ? create((int)count, &light, error) : shape_error_memory(error);
     if (!status) {
-        light->count = (int)count;
         choose(order, light, cells);
         status = build_all(order, cells, light, error);
     }
@@ -230,15 +247,22 @@ shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *
     return SHAPE_OK;
 }
 
-shape_status gl_light_add(gl_light *light, const gl_light *from, int texture_limit, shape_error *error)
+shape_status gl_light_join(const gl_light *first, const gl_light *second, int texture_limit, gl_light **made,
+                           shape_error *error)
 {
-    bool added = false;
-    for (int i = 0; i < light->count; i++)
-        if (!light->lit[i] && from->lit[i]) {
-            light->lit[i] = share(from->lit[i]);
-            added = true;
-        }
-    return added ? pack(light, texture_limit, error) : SHAPE_OK;
+    gl_light *light = NULL;
+    shape_status status = create(first->count, &light, error);
+    for (int i = 0; i < first->count && !status; i++)
+        light->lit[i] = share(first->lit[i] ? first->lit[i] : second->lit[i]);
+    if (!status)
+        status = pack(light, texture_limit, error);
+    if (status) {
+        gl_light_drop(light);
+        return status;
+    }
+    light->made = first->made;
+    *made = light;
+    return SHAPE_OK;
 }
 
 /* Values 0..3 (part 0) or 4..7 (part 1) of all grids as one texture. */
@@ -281,20 +305,50 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
     }
 }
 
-void gl_light_compose(gl_light *light, const shape_gl_renderer *renderer, shape_dvec3 eye)
+static void compose_one(const gl_light *light, const shape_gl_renderer *r, shape_dvec3 eye, int cloud,
+                        float *to)
 {
+    if (light->lit[cloud])
+        shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light, r->sky_upper,
+                             r->sky_lower, eye, to);
+}
+
+/* Where each shown cloud's cells begin in the scratch, which is as large as all of them together. */
+static void place_scratch(const gl_light *light, const gl_scene *scene, size_t *first)
+{
+    size_t next = 0;
+    for (int i = 0; i < scene->shown_count; i++) {
+        first[i] = next;
+        next += light->lit[scene->shown[i]] ? cell_count(light->boxes[scene->shown[i]].size) : 0;
+    }
+}
+
+shape_status gl_light_compose(gl_light *light, shape_gl_renderer *renderer, shape_dvec3 eye,
+                              shape_error *error)
+{
+    const gl_scene *scene = &renderer->scene;
+    const int count = scene->shown_count;
+    size_t *first = malloc(((size_t)count + 1) * sizeof *first);
+    if (!first)
+        return shape_error_memory(error);
+    place_scratch(light, scene, first);
+    /* Many clouds are shared out, since one by one each would keep all threads waiting for the last. */
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < (count > 1 ? count : 0); i++)
+        compose_one(light, renderer, eye, scene->shown[i], light->cells + 4 * first[i]);
+    if (count == 1)
+        compose_one(light, renderer, eye, scene->shown[0], light->cells);
     if (!light->seen)
         light->seen = gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, NULL);
     glBindTexture(GL_TEXTURE_3D, light->seen);
-    for (int i = 0; i < renderer->scene.shown_count; i++) {
-        int cloud = renderer->scene.shown[i];
-        const gl_box *box = &light->boxes[cloud];
-        if (!light->lit[cloud])
+    for (int i = 0; i < count; i++) {
+        const gl_box *box = &light->boxes[scene->shown[i]];
+        if (!light->lit[scene->shown[i]])
             continue;
-        /* The scratch is as large as the atlas, so as any one grid. */
-        shape_lightgrid_seen(&light->lit[cloud]->grid, &renderer->volume->clouds[cloud], &renderer->light,
-                             renderer->sky_upper, renderer->sky_lower, eye, light->cells);
         glTexSubImage3D(GL_TEXTURE_3D, 0, box->place[0], box->place[1], box->place[2], box->size[0],
-                        box->size[1], box->size[2], GL_RGBA, GL_FLOAT, light->cells);
+                        box->size[1], box->size[2], GL_RGBA, GL_FLOAT, light->cells + 4 * first[i]);
+        renderer->costs.light_bytes += cell_count(box->size) * 4 * sizeof *light->cells;
     }
+    free(first);
+    return SHAPE_OK;
 }

@@ -81,6 +81,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     gl_scene_free(&renderer->scene);
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);
+    gl_pool_free(&renderer->pool);
     gl_preview_free(&renderer->preview);
     gl_surface_free(&renderer->surface);
     glDeleteProgram(renderer->view_program);
@@ -147,6 +148,7 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     gl_refine_stop(renderer);
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);
+    gl_pool_free(&renderer->pool);
     renderer->fade_left = 0;
     renderer->volume = volume;
     renderer->window_length = window_length(volume);
@@ -280,8 +282,11 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
     if (grids->baked)
         gl_baked_place(grids->baked, &renderer->scene);
     gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
+    shape_status status = SHAPE_OK;
     if (frame->sample == 0 && !is_paper(renderer))
-        gl_light_compose(grids->light, renderer, frame->camera->origin);
+        status = gl_light_compose(grids->light, renderer, frame->camera->origin, error);
+    if (status)
+        return status;
     if (renderer->options.method != SHAPE_GL_DEFAULT)
         return draw_whole(renderer, frame, error);
     gl_preview_draw(renderer, grids, frame);
@@ -294,6 +299,8 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     const shape_gl_part whole = {0, 0, view->width, view->height};
     const shape_gl_part *part = renderer->part.width ? &renderer->part : &whole;
     shape_status status = prepare_targets(renderer, part->width, part->height, error);
+    if (!moving)
+        renderer->fade_left = 0; /* a picture at rest is of the last grids alone */
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)
@@ -345,7 +352,8 @@ bool shape_gl_refined(shape_gl_renderer *renderer)
 
 bool shape_gl_pending(const shape_gl_renderer *renderer)
 {
-    return renderer->refinement || renderer->fade_left > 0;
+    return renderer->refinement || renderer->coming.light || renderer->coming.baked ||
+           renderer->fade_left > 0;
 }
 
 void shape_gl_finish(void)

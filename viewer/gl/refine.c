@@ -5,6 +5,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 #include "gl_private.h"
@@ -16,6 +17,8 @@ enum {
     FEW_SCATTERING = 3,    /* of one among very many */
     ALL_SCATTERING = 4000, /* of all clouds together */
     FIRST_VOXELS = 150000, /* of all clouds together */
+    SLICE = 4 << 20,       /* bytes of voxels that are sent to the GPU with a picture */
+    NICE = 5               /* of the thread: pictures go first */
 };
 
 struct gl_refinement {
@@ -57,13 +60,15 @@ static shape_status make(const gl_order *order, gl_light **light, double *light_
 static void *work(void *data)
 {
     gl_refinement *job = data;
+    (void)setpriority(PRIO_PROCESS, 0, NICE); /* of this thread, and of those that OpenMP makes for it */
     job->status =
         make(&job->order, &job->new_light, &job->light_ms, &job->new_baked, &job->bake_ms, &job->error);
     atomic_store(&job->done, true);
     return NULL;
 }
 
-void gl_refine_stop(shape_gl_renderer *r)
+/* Waits for the thread and throws away what it still has. */
+static void end_job(shape_gl_renderer *r)
 {
     gl_refinement *job = r->refinement;
     if (!job)
@@ -74,6 +79,12 @@ void gl_refine_stop(shape_gl_renderer *r)
     gl_grids_drop(&job->from);
     free(job);
     r->refinement = NULL;
+}
+
+void gl_refine_stop(shape_gl_renderer *r)
+{
+    end_job(r);
+    gl_grids_drop(&r->coming);
 }
 
 /* One more user of grids. */
@@ -116,10 +127,22 @@ static void take_light(shape_gl_renderer *r, gl_light *light)
 
 static void take_baked(shape_gl_renderer *r, gl_baked *baked)
 {
-    gl_baked_upload(baked);
     r->costs.baked_clouds += (size_t)baked->made;
     gl_baked_drop(r->grids.baked);
     r->grids.baked = baked;
+}
+
+/* Sends a slice of a set to the GPU: finds places for it, among those that are shown. *all: nothing is left. */
+static shape_status send(shape_gl_renderer *r, gl_baked *baked, size_t most, int texture_limit, bool *all,
+                         shape_error *error)
+{
+    const gl_baked *const sets[] = {r->grids.baked, r->last_grids.baked, r->coming.baked, baked};
+    gl_pool_keep(&r->pool, sets, 4);
+    shape_status status = gl_pool_place(&r->pool, baked, texture_limit, error);
+    if (!status)
+        *all = gl_pool_send(&r->pool, baked, most, &r->costs.baked_bytes);
+    baked->texture = r->pool.texture;
+    return status;
 }
 
 /* The grids that were shown so far stay, to be faded out. */
@@ -130,48 +153,76 @@ static void keep_last(shape_gl_renderer *r)
     r->fade_left = GL_FADE_FRAMES;
 }
 
-/* Takes over what the thread has made, with what has come into sight meanwhile. */
-static shape_status take(shape_gl_renderer *r, gl_refinement *job, int texture_limit, shape_error *error)
+/* Of what comes, and of what is there already for clouds that have come into sight meanwhile. */
+static shape_status join(gl_grids *coming, const gl_grids *there, int texture_limit, shape_error *error)
 {
+    gl_light *light = NULL;
+    gl_baked *baked = NULL;
     shape_status status = SHAPE_OK;
-    if (job->new_light && job->old_light) {
-        gl_light_drop(job->new_light);
-        job->new_light = NULL;
+    if (coming->light && there->light)
+        status = gl_light_join(coming->light, there->light, texture_limit, &light, error);
+    if (coming->baked && there->baked && !status)
+        status = gl_baked_join(coming->baked, there->baked, &baked, error);
+    if (light) {
+        gl_light_drop(coming->light);
+        coming->light = light;
     }
-    if (!job->new_light && !job->new_baked)
-        return SHAPE_OK;
-    if (job->new_light && r->grids.light)
-        status = gl_light_add(job->new_light, r->grids.light, texture_limit, error);
-    if (job->new_baked && r->grids.baked && !status)
-        status = gl_baked_add(job->new_baked, r->grids.baked, texture_limit, error);
+    if (baked) {
+        baked->texture = coming->baked->texture;
+        gl_baked_drop(coming->baked);
+        coming->baked = baked;
+    }
+    return status;
+}
+
+/* Brings what a thread has made into use: first its voxels are sent, slice by slice, then it is faded in, unless something
+ * else still is. */
+static shape_status bring(shape_gl_renderer *r, int texture_limit, shape_error *error)
+{
+    gl_grids *coming = &r->coming;
+    bool all = true;
+    shape_status status =
+        coming->baked ? send(r, coming->baked, SLICE, texture_limit, &all, error) : SHAPE_OK;
+    if (status || !all || r->fade_left > 0)
+        return status;
+    status = join(coming, &r->grids, texture_limit, error);
     if (status)
         return status;
     keep_last(r);
-    if (job->new_light) {
-        take_light(r, job->new_light);
-        r->costs.light_ms = job->light_ms;
+    if (coming->light) {
+        take_light(r, coming->light);
+        r->costs.light_ms = r->coming_ms[0];
     }
-    if (job->new_baked) {
-        take_baked(r, job->new_baked);
-        r->costs.bake_ms = job->bake_ms;
+    if (coming->baked) {
+        take_baked(r, coming->baked);
+        r->costs.bake_ms = r->coming_ms[1];
     }
+    coming->light = NULL;
+    coming->baked = NULL;
     r->refined = true;
-    job->new_light = NULL;
-    job->new_baked = NULL;
     return SHAPE_OK;
 }
 
-static shape_status collect(shape_gl_renderer *r, int texture_limit, shape_error *error)
+/* What the thread has made, if it is done. */
+static shape_status collect(shape_gl_renderer *r, shape_error *error)
 {
     gl_refinement *job = r->refinement;
     if (!job || !atomic_load(&job->done))
         return SHAPE_OK;
     shape_status status = job->status;
-    if (status)
+    if (status) {
         *error = job->error;
-    else
-        status = take(r, job, texture_limit, error);
-    gl_refine_stop(r);
+    } else {
+        if (!job->old_light) {
+            r->coming.light = job->new_light;
+            job->new_light = NULL;
+        }
+        r->coming.baked = job->new_baked;
+        job->new_baked = NULL;
+        r->coming_ms[0] = job->light_ms;
+        r->coming_ms[1] = job->bake_ms;
+    }
+    end_job(r);
     return status;
 }
 
@@ -187,9 +238,14 @@ static shape_status make_now(shape_gl_renderer *r, const gl_order *order, shape_
     }
     if (light)
         take_light(r, light);
-    if (baked)
+    if (baked) {
+        bool all;
+        if (!r->options.background) /* places do not depend on what was there before */
+            gl_pool_free(&r->pool);
         take_baked(r, baked);
-    return SHAPE_OK;
+        status = send(r, baked, SIZE_MAX, order->texture_limit, &all, error);
+    }
+    return status;
 }
 
 static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
@@ -218,6 +274,17 @@ static int first_scattering(const shape_gl_renderer *r, const gl_order *order)
     return cells;
 }
 
+/* What fades out gets what has just come into sight, too: a sight of it is better than none. */
+static shape_status extend_last(shape_gl_renderer *r, int texture_limit, shape_error *error)
+{
+    shape_status status = SHAPE_OK;
+    if (r->fade_left > 0)
+        status = join(&r->last_grids, &r->grids, texture_limit, error);
+    if (!status && r->fade_left > 0 && r->last_grids.baked)
+        r->last_grids.baked->texture = r->pool.texture;
+    return status;
+}
+
 /* Something coarse, now, of what is wholly missing. */
 static shape_status make_first(shape_gl_renderer *r, const gl_order *order, shape_error *error)
 {
@@ -228,22 +295,30 @@ static shape_status make_first(shape_gl_renderer *r, const gl_order *order, shap
     first.scattering_cells = first_scattering(r, order);
     if (first.bake_voxels > FIRST_VOXELS)
         first.bake_voxels = FIRST_VOXELS;
-    r->fade_left = 0;
-    return make_now(r, &first, error);
+    if (!order->light_from)
+        r->fade_left = 0; /* all light is new, as the sun is */
+    shape_status status = make_now(r, &first, error);
+    return status ? status : extend_last(r, order->texture_limit, error);
 }
 
 static shape_status prepare_in_background(shape_gl_renderer *r, gl_order *order, shape_error *error)
 {
-    shape_status status = collect(r, order->texture_limit, error);
+    shape_status status = collect(r, error);
+    if (r->light_changed) {
+        if (r->refinement)
+            r->refinement->old_light = true;
+        gl_light_drop(r->coming.light);
+        r->coming.light = NULL;
+    }
+    if (!status && (r->coming.light || r->coming.baked))
+        status = bring(r, order->texture_limit, error);
     if (status)
         return status;
-    if (r->light_changed && r->refinement)
-        r->refinement->old_light = true;
     order->lenient = true;
     order->light_from = r->light_changed ? NULL : r->grids.light;
     order->baked_from = r->grids.baked;
-    gl_fit light = order->light_from ? gl_light_fit(r->grids.light, order) : GL_MISSING;
-    gl_fit baked = r->grids.baked ? gl_baked_fit(r->grids.baked, order) : GL_MISSING;
+    gl_fit light = order->light_from ? gl_light_fit(r->grids.light, order, 1) : GL_MISSING;
+    gl_fit baked = r->grids.baked ? gl_baked_fit(r->grids.baked, order, 1) : GL_MISSING;
     order->want_light = light == GL_MISSING;
     order->want_baked = baked == GL_MISSING;
     if (order->want_light || order->want_baked)
@@ -251,9 +326,14 @@ static shape_status prepare_in_background(shape_gl_renderer *r, gl_order *order,
     if (status)
         return status;
     r->light_changed = false;
-    order->want_light = light >= GL_FAR_TOO_FINE;
-    order->want_baked = baked >= GL_FAR_TOO_FINE;
-    if (!r->refinement && (order->want_light || order->want_baked))
+    if (r->refinement || r->coming.light || r->coming.baked)
+        return SHAPE_OK;
+    /* What is about to come into sight is made before it does. */
+    order->want_light =
+        light >= GL_FAR_TOO_FINE || gl_light_fit(r->grids.light, order, GL_MARGIN) == GL_MISSING;
+    order->want_baked =
+        baked >= GL_FAR_TOO_FINE || gl_baked_fit(r->grids.baked, order, GL_MARGIN) == GL_MISSING;
+    if (order->want_light || order->want_baked)
         start(r, order);
     return SHAPE_OK;
 }
@@ -263,9 +343,9 @@ static shape_status prepare_now(shape_gl_renderer *r, gl_order *order, shape_err
 {
     order->light_from = r->light_changed ? NULL : r->grids.light;
     order->baked_from = r->grids.baked;
-    order->want_light = !order->light_from || gl_light_fit(r->grids.light, order) != GL_FITS;
+    order->want_light = !order->light_from || gl_light_fit(r->grids.light, order, 1) != GL_FITS;
     order->want_baked = r->options.method == SHAPE_GL_DEFAULT &&
-                        (!order->baked_from || gl_baked_fit(r->grids.baked, order) != GL_FITS);
+                        (!order->baked_from || gl_baked_fit(r->grids.baked, order, 1) != GL_FITS);
     shape_status status = order->want_light || order->want_baked ? make_now(r, order, error) : SHAPE_OK;
     r->light_changed = r->light_changed && status;
     return status;

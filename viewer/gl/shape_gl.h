@@ -48,6 +48,8 @@ typedef struct shape_gl_costs {
     double steps_per_pixel, fetches_per_pixel; /* of the last picture read by shape_gl_read */
     size_t lit_clouds,
         baked_clouds; /* how often a cloud's light was made, and its density baked, since the beginning */
+    size_t light_bytes,
+        baked_bytes; /* that were sent to the GPU, of light as seen and of baked density, since then */
 } shape_gl_costs;
 
 /* Compiles the shaders. The caller destroys it. */

@@ -17,7 +17,9 @@ GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, 
     enum { WIDTH = 2048 };
     GLint largest = 2048;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    size_t rows = texels ? (texels + WIDTH - 1) / WIDTH : 1;
+    size_t rows = 1;
+    while (rows * WIDTH < texels) /* a power of two: Mesa compiles shaders anew where that changes */
+        rows *= 2;
     if (rows > (size_t)largest) {
         *status = shape_error_set(error, SHAPE_ERROR_LIMIT,
                                   "%zu texels are more than this GPU's textures hold (%zu)", texels,
@@ -72,26 +74,47 @@ static const shape_primitives *list_number(const shape_volume *volume, size_t i)
     return i < count ? volume->clouds[i].list : volume->clouds[i - count].shape_list;
 }
 
-/* Where each list begins in the textures of all lists; copies share. */
-static size_t place_lists(gl_scene *scene, const shape_volume *volume, bool ellipsoids)
+/* The first number of the same list as number i, by a hash table of lists with open addressing. */
+static size_t first_of(const shape_volume *volume, size_t *slots, size_t mask, size_t i)
 {
-    size_t total = 0, *places = ellipsoids ? scene->list_ellipsoids : scene->list_spheres;
+    const shape_primitives *list = list_number(volume, i);
+    size_t slot = (size_t)(((uintptr_t)list >> 4) * 0x9e3779b97f4a7c15u >> 20) & mask;
+    while (slots[slot] && list_number(volume, slots[slot] - 1) != list)
+        slot = (slot + 1) & mask;
+    if (!slots[slot])
+        slots[slot] = i + 1;
+    return slots[slot] - 1;
+}
+
+/* Where each list begins in the textures of all lists; copies share. */
+static shape_status place_lists(gl_scene *scene, const shape_volume *volume, bool ellipsoids, size_t *total,
+                                shape_error *error)
+{
+    size_t *places = ellipsoids ? scene->list_ellipsoids : scene->list_spheres, count = 16;
+    while (count < 4 * volume->cloud_count)
+        count *= 2;
+    size_t *slots = calloc(count, sizeof *slots);
+    if (!slots)
+        return shape_error_memory(error);
+    *total = 0;
     for (size_t i = 0; i < 2 * volume->cloud_count; i++) {
         const shape_primitives *list = list_number(volume, i);
-        size_t j = i < volume->cloud_count ? 0 : i - volume->cloud_count; /* its own supports, most likely */
-        while (j < i && list_number(volume, j) != list)
-            j++;
-        places[i] = j < i ? places[j] : total;
-        if (j == i)
-            total += ellipsoids ? list->ellipsoid_count : list->sphere_count;
+        size_t first = first_of(volume, slots, count - 1, i);
+        places[i] = first < i ? places[first] : *total;
+        if (first == i)
+            *total += ellipsoids ? list->ellipsoid_count : list->sphere_count;
     }
-    return total;
+    free(slots);
+    return SHAPE_OK;
 }
 
 static shape_status upload_lists(gl_scene *scene, const shape_volume *volume, bool ellipsoids,
                                  shape_error *error)
 {
-    size_t total = place_lists(scene, volume, ellipsoids);
+    size_t total = 0;
+    shape_status status = place_lists(scene, volume, ellipsoids, &total, error);
+    if (status)
+        return status;
     const size_t texels_each = ellipsoids ? 3 : 1;
     const size_t *places = ellipsoids ? scene->list_ellipsoids : scene->list_spheres;
     float *all = calloc((total * texels_each + 1) * 4, sizeof *all);
@@ -104,7 +127,6 @@ static shape_status upload_lists(gl_scene *scene, const shape_volume *volume, bo
         if (count)
             memcpy(all + places[i] * texels_each * 4, from, count * texels_each * 16);
     }
-    shape_status status = SHAPE_OK;
     GLuint texture = gl_float_texture(all, total * texels_each, &status, error);
     *(ellipsoids ? &scene->ellipsoids : &scene->spheres) = texture;
     free(all);
@@ -189,15 +211,45 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
     free(roots);
     glGenTextures(1, &scene->clouds);
     glBindTexture(GL_TEXTURE_2D, scene->clouds);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, GL_RECORD_TEXELS, (GLsizei)count + 1, 0, GL_RGBA, GL_FLOAT,
+                 NULL);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return SHAPE_OK;
+}
+
+/* Whether the ball around a cloud's box lies outside one side for certain: most clouds of a large sky do. */
+static bool is_far_off(const shape_volume_cloud *c, const shape_camera *camera, double width, double height,
+                       double wider)
+{
+    shape_dvec3 middle, half;
+    double radius2 = 0;
+    for (int i = 0; i < 3; i++) {
+        const double low = (double)(&c->box.min.x)[i], high = (double)(&c->box.max.x)[i];
+        (&middle.x)[i] = 0.5 * (low + high);
+        (&half.x)[i] = 0.5 * (high - low);
+    }
+    for (int i = 0; i < 3; i++) { /* so far away are the corners at most along each axis */
+        const double *m = c->frame.m[i],
+                     reach = fabs(m[0] * half.x) + fabs(m[1] * half.y) + fabs(m[2] * half.z);
+        radius2 += reach * reach;
+    }
+    shape_dvec3 p = shape_dvec3_sub(shape_frame_point(&c->frame, middle), camera->origin);
+    const double radius = sqrt(radius2) + 1e-6 * (fabs(p.x) + fabs(p.y) + fabs(p.z));
+    const double x = fabs(shape_dvec3_dot(p, camera->right)) / width,
+                 y = fabs(shape_dvec3_dot(p, camera->up)) / height, z = shape_dvec3_dot(p, camera->forward);
+    width *= wider;
+    height *= wider;
+    return z + radius < 0 || x - z * width > radius * sqrt(1 + width * width) ||
+           y - z * height > radius * sqrt(1 + height * height);
 }
 
 bool gl_in_sight(const shape_volume_cloud *c, const shape_camera *camera, double wider)
 {
     int outside[5] = {0};
     double width = shape_dvec3_length(camera->right), height = shape_dvec3_length(camera->up);
+    if (is_far_off(c, camera, width, height, wider))
+        return false;
     for (int corner = 0; corner < 8; corner++) {
         shape_dvec3 p = {corner & 1 ? c->box.max.x : c->box.min.x, corner & 2 ? c->box.max.y : c->box.min.y,
                          corner & 4 ? c->box.max.z : c->box.min.z};
@@ -232,8 +284,8 @@ void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape
     }
     scene->shown_count = count;
     glBindTexture(GL_TEXTURE_2D, scene->clouds);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, GL_RECORD_TEXELS, count ? count : 1, 0, GL_RGBA, GL_FLOAT,
-                 rows);
+    if (count)
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, GL_RECORD_TEXELS, count, GL_RGBA, GL_FLOAT, rows);
 }
 
 void gl_scene_put(gl_scene *scene, int cloud, int texel, double x, double y, double z, double w)

@@ -60,8 +60,10 @@ shape_status shape_lightgrid_build_2018(const shape_volume *volume, size_t cloud
 void shape_lightgrid_free(shape_lightgrid *grid);
 
 /* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid
- * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green, blue and 0, into rgba [cells][4]. The same sum as shaders/light/lightgrid.glsl
- * takes at a point; sky_upper and sky_lower are shape_sky_mean's. */
+ * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green, blue
+ * and 0, into rgba [cells][4]. The same sum as shaders/light/lightgrid.glsl takes at a point, but near the eye: a cell
+ * stands for the directions to all points that are interpolated from it, and gets their mean. sky_upper and sky_lower are
+ * shape_sky_mean's. */
 void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
                           const shape_light *light, const float sky_upper[3], const float sky_lower[3],
                           shape_dvec3 eye, float *rgba);
