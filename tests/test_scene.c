@@ -259,7 +259,8 @@ static void mistakes_have_their_place(void **state)
          "meshes[0]: there is no key \"keep-depth\""},
         {HEAD "\"lightning\": 1}", "the keys are scene, clouds, meshes, ground"},
         {HEAD "\"edits\": [{\"hidden\": true}]}", "edits[0]: names no cloud"},
-        {HEAD "\"edits\": [{\"cloud\": \"a\"}, {\"cloud\": \"a\"}]}", "edits[1]: the cloud \"a\" is edited already"},
+        {HEAD "\"edits\": [{\"cloud\": \"a\"}, {\"cloud\": \"a\"}]}",
+         "edits[1]: the cloud \"a\" is edited already"},
         {HEAD "\"edits\": [{\"cloud\": \"a\", \"scale\": [1, 1, 1]}]}", "edits[0].scale: expected a number"},
         {HEAD "\"edits\": [{\"cloud\": \"a\", \"hidden\": 1}]}", "edits[0].hidden: expected true or false"},
         {HEAD "\"ground\": {\"height\": 2e6}}", "ground.height: 2000000 is out of range"},
@@ -521,7 +522,7 @@ static void pictures_hold_scenes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(all_keys_are_read),
-        cmocka_unit_test(pictures_hold_scenes),
+                                       cmocka_unit_test(pictures_hold_scenes),
                                        cmocka_unit_test(meshes_stand_where_they_are_put),
                                        cmocka_unit_test(written_scenes_read_back),
                                        cmocka_unit_test(numbers_survive),

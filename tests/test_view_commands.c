@@ -26,10 +26,24 @@ static const struct {
     const char *program, *input;
     option options[5];
 } all[] = {
-    {"neph-gauss", "", {{"count", {9}}, {"sigma", {5, 1.25, 0.1}}, {"radius-law", {0}}, {"no-hollow", {1}}, {"max-radius", {2.3}}}},
+    {"neph-gauss",
+     "",
+     {{"count", {9}},
+      {"sigma", {5, 1.25, 0.1}},
+      {"radius-law", {0}},
+      {"no-hollow", {1}},
+      {"max-radius", {2.3}}}},
     {"neph-meta", "", {{"count", {5}}, {"sigma", {1, 2, 0.3}}, {"max-radius", {1.7}}}},
-    {"neph-layer", "", {{"noise", {1}}, {"ramp", {0.3, 0.4}}, {"extent", {9, 4, 7}}, {"fade-top", {0.35}}, {"coverage", {0.62}}}},
-    {"neph-lsys", "heap.lsys", {{"iterations", {4}}, {"angle", {20, 40.5}}, {"radius", {0.7, 0.7}}, {"shrink", {0.8, 0.9}}}},
+    {"neph-layer",
+     "",
+     {{"noise", {1}},
+      {"ramp", {0.3, 0.4}},
+      {"extent", {9, 4, 7}},
+      {"fade-top", {0.35}},
+      {"coverage", {0.62}}}},
+    {"neph-lsys",
+     "heap.lsys",
+     {{"iterations", {4}}, {"angle", {20, 40.5}}, {"radius", {0.7, 0.7}}, {"shrink", {0.8, 0.9}}}},
     {"neph-mesh", "wedge.obj", {{"faces", {4}}, {"scale", {1.3}}, {"no-rotate", {1}}, {"up", {1}}}},
 };
 
@@ -114,15 +128,16 @@ static void commands_make_what_is_seen(void **state)
 static void defaults_are_the_programs(void **state)
 {
     (void)state;
-    static const char *const without[] = {"preset", "frequency", "altitudes", "planet-radius", "fill", "fit", "field", "area",
-                                          "keep", "size", "up"};
+    static const char *const without[] = {"preset", "frequency", "altitudes", "planet-radius", "fill", "fit",
+                                          "field",  "area",      "keep",      "size",          "up"};
     for (size_t i = 0; i < 3; i++) { /* the other two have a file's own */
         shape_error error;
         static char mistakes[4096];
         view_contents plain, said;
         view_setting_row row;
         view_generator g = view_generator_named(all[i].program, 3);
-        assert_int_equal(view_source_read("", &g, NULL, NULL, false, &plain, mistakes, sizeof mistakes, &error), SHAPE_OK);
+        assert_int_equal(
+            view_source_read("", &g, NULL, NULL, false, &plain, mistakes, sizeof mistakes, &error), SHAPE_OK);
         for (int k = 0; view_setting_get_row(&g, k, &row); k++) {
             bool skip = row.kind == VIEW_SETTING_FLAG;
             for (size_t n = 0; n < sizeof without / sizeof *without; n++)

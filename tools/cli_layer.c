@@ -8,19 +8,20 @@ static struct {
     double frequency, stretch[3], blend, gain, worley_gain, worley_frequency;
     int64_t worley_octaves;
     double coverage, cut, ramp[2], falloff, fade_bottom, fade_top, fade_side;
-} values = {/* what is not given is not looked at here; a panel begins with it (shape_layer_options_defaults) */
-            .preset = -1,
-            .noise = SHAPE_NOISE_PERLIN_WORLEY,
-            .extent = {20, 6, 20},
-            .altitudes = {0, 6},
-            .stretch = {1, 1, 1},
-            .blend = 0.5,
-            .gain = 1,
-            .worley_gain = 1,
-            .worley_frequency = 1,
-            .worley_octaves = 3,
-            .coverage = 0.5,
-            .ramp = {0.45, 0.65}};
+} values =
+    {/* what is not given is not looked at here; a panel begins with it (shape_layer_options_defaults) */
+     .preset = -1,
+     .noise = SHAPE_NOISE_PERLIN_WORLEY,
+     .extent = {20, 6, 20},
+     .altitudes = {0, 6},
+     .stretch = {1, 1, 1},
+     .blend = 0.5,
+     .gain = 1,
+     .worley_gain = 1,
+     .worley_frequency = 1,
+     .worley_octaves = 3,
+     .coverage = 0.5,
+     .ramp = {0.45, 0.65}};
 
 static struct {
     bool preset, bounds, noise, extent, altitudes, planet_radius, frequency, stretch, blend, gain,

@@ -40,7 +40,8 @@ static const cli_option view_options[] = {
      "[off]",
      &error_given, true},
     {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta|layer",
-     "no IN: what neph-gauss, neph-meta or neph-layer makes, whose options are in the panel [IN]", NULL, true},
+     "no IN: what neph-gauss, neph-meta or neph-layer makes, whose options are in the panel [IN]", NULL,
+     true},
     {"split", 0, CLI_NUMBER, &split_share, 0, 1, "S",
      "of two files: the share of the width that shows the first [0.5]", NULL, true},
     {"bench", 0, CLI_INTEGER, &bench_frames, 1, 100000, "N",
@@ -428,7 +429,8 @@ static void check_opaque(const view_job *job)
 /* The file that a scene is compared with, where the command line names none and one picture is not wanted by itself. */
 static char *find_compared(view_job *job, const shape_scene *scene)
 {
-    if (!scene || !scene->compare || job->other_path || bench_given || frames_given || error_given || morph_path)
+    if (!scene || !scene->compare || job->other_path || bench_given || frames_given || error_given ||
+        morph_path)
         return NULL;
     char *path = cli_scene_file(job->path, scene->compare);
     job->other_path = path;

@@ -251,7 +251,8 @@ void draw_cloud(const view_panel_input &in)
         int phase = static_cast<int>(c.medium.phase);
         const int was = phase;
         choose("phase", &phase, "hg\0isotropic\0rayleigh\0mie\0two-lobe\0");
-        int start = cloud < in.base->cloud_count ? static_cast<int>(in.base->clouds[cloud].medium.phase) : phase;
+        int start =
+            cloud < in.base->cloud_count ? static_cast<int>(in.base->clouds[cloud].medium.phase) : phase;
         explain_value("phase function", &phase, &start, sizeof phase);
         if (phase != was)
             for (int i = 0; i < in.state->cloud_count; i++)
@@ -262,7 +263,8 @@ void draw_cloud(const view_panel_input &in)
     if (section("Place")) {
         ImGui::Checkbox("visible", &c.visible);
         if (cloud < in.base->cloud_count)
-            explain_value("whether the cloud is there", &c.visible, &in.base->clouds[cloud].visible, sizeof c.visible);
+            explain_value("whether the cloud is there", &c.visible, &in.base->clouds[cloud].visible,
+                          sizeof c.visible);
         turn_group("Place", in, cloud);
     }
 }
@@ -274,12 +276,13 @@ void draw_light(const view_panel_input &in)
         return;
     const view_state &start = *in.base;
     ImGui::Checkbox("by the time of day", &s.course.day_runs);
-    explain_value("the sun goes by hour, latitude and declination", &s.course.day_runs, &start.course.day_runs,
-                  sizeof s.course.day_runs);
+    explain_value("the sun goes by hour, latitude and declination", &s.course.day_runs,
+                  &start.course.day_runs, sizeof s.course.day_runs);
     turn_group(s.course.day_runs ? "Day" : "Sun", in, 0);
     ImGui::DragFloat3("irradiance", s.sun_irradiance, 0.02f, 0, 100, "%.3g", ImGuiSliderFlags_AlwaysClamp);
-    explain_value("of the sun, on a plane that faces it: red, green, blue, 0 to 100 (pi: a white surface is 1)",
-                  s.sun_irradiance, start.sun_irradiance, sizeof s.sun_irradiance);
+    explain_value(
+        "of the sun, on a plane that faces it: red, green, blue, 0 to 100 (pi: a white surface is 1)",
+        s.sun_irradiance, start.sun_irradiance, sizeof s.sun_irradiance);
     int sky = static_cast<int>(s.sky);
     const int sky_start = static_cast<int>(start.sky);
     choose("sky", &sky, "none\0constant\0clear\0");
@@ -287,7 +290,8 @@ void draw_light(const view_panel_input &in)
     s.sky = static_cast<shape_sky_kind>(sky);
     if (s.sky == SHAPE_SKY_CONSTANT) {
         ImGui::ColorEdit3("radiance", s.sky_radiance, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
-        explain_value("of the sky: red, green, blue", s.sky_radiance, start.sky_radiance, sizeof s.sky_radiance);
+        explain_value("of the sky: red, green, blue", s.sky_radiance, start.sky_radiance,
+                      sizeof s.sky_radiance);
     }
 }
 
@@ -333,9 +337,11 @@ void draw_time(const view_panel_input &in, view_panel_wish &wish)
     turn_group("Time", in, 0);
     double *wind = in.state->course.motion.wind, *drift = in.state->course.motion.drift;
     const shape_motion &start = in.base->course.motion;
-    turn_vector("wind, m/s", "carries the clouds with their noise: x (east), y (up), z (south), -1000 to 1000", wind,
+    turn_vector("wind, m/s",
+                "carries the clouds with their noise: x (east), y (up), z (south), -1000 to 1000", wind,
                 start.wind, 1000);
-    turn_vector("drift, m/s", "moves the noise through the clouds: x, y, z, -1000 to 1000", drift, start.drift, 1000);
+    turn_vector("drift, m/s", "moves the noise through the clouds: x, y, z, -1000 to 1000", drift,
+                start.drift, 1000);
     wish.play = ImGui::SmallButton(in.playing ? "stop (Space)" : "play (Space)");
 }
 
@@ -388,7 +394,8 @@ void draw_judging(const view_panel_input &in)
     ImGui::Checkbox("boxes (B)", &s.boxes);
     choose("primitives (P)", &s.outlines, "none\0as wires\0shaded\0");
     choose("heat (T)", &s.heat,
-           "none\0steps, white at 64\0fetches, white at 128\0candidates, white at 32\0optical depth, white at 5\0");
+           "none\0steps, white at 64\0fetches, white at 128\0candidates, white at 32\0optical depth, white "
+           "at 5\0");
     if (s.heat == VIEW_HEAT_CANDIDATES && s.method == 0)
         ImGui::TextDisabled("the default method looks at voxels: none");
     ImGui::Checkbox("difference from the reference (R)", &s.difference);
@@ -533,13 +540,36 @@ void draw_notes(const view_panel_input &in, const ImVec2 &screen)
         draw_note(in.error, ImVec2(left, y), most, IM_COL32(255, 140, 120, 255));
 }
 
+void draw_solids(const view_panel_input &in, const ImVec2 &screen)
+{
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    int triangles[VIEW_SOLID_TRIANGLES][3];
+    int count = view_solid_triangles(triangles), corners = view_solid_corners();
+    ImVec2 white = ImGui::GetFontTexUvWhitePixel();
+    view_solids solids = {};
+    view_solids_make(&solids, in.state, in.placed, screen.x, screen.y);
+    for (size_t i = 0; i < solids.count; i++) {
+        const view_corner *c = solids.corners + i * static_cast<size_t>(corners);
+        list->PrimReserve(3 * count, corners);
+        unsigned first = list->_VtxCurrentIdx;
+        for (int k = 0; k < count; k++)
+            for (int corner : triangles[k])
+                list->PrimWriteIdx(static_cast<ImDrawIdx>(first + static_cast<unsigned>(corner)));
+        for (int k = 0; k < corners; k++)
+            list->PrimWriteVtx(ImVec2(c[k].at[0], c[k].at[1]), white, c[k].colour);
+    }
+    view_solids_free(&solids);
+}
+
 void draw_wires(const view_panel_input &in, const ImVec2 &screen)
 {
     if (!in.placed || !(in.state->boxes || in.state->outlines))
         return;
+    if (in.state->outlines == VIEW_OUTLINE_SHADED)
+        draw_solids(in, screen);
     ImDrawList *list = ImGui::GetBackgroundDrawList();
     view_wires wires = {};
-    if (in.state->outlines)
+    if (in.state->outlines == VIEW_OUTLINE_WIRES)
         view_wires_primitives(&wires, in.state, in.placed, screen.x, screen.y);
     size_t primitives = wires.count;
     if (in.state->boxes)

@@ -12,7 +12,13 @@ extern "C" {
 struct GLFWwindow;
 
 /* What a picture's time goes to: making its clouds, their light, their baked density, drawing. */
-typedef enum view_pass { VIEW_PASS_SET, VIEW_PASS_LIGHT, VIEW_PASS_BAKE, VIEW_PASS_DRAW, VIEW_PASSES } view_pass;
+typedef enum view_pass {
+    VIEW_PASS_SET,
+    VIEW_PASS_LIGHT,
+    VIEW_PASS_BAKE,
+    VIEW_PASS_DRAW,
+    VIEW_PASSES
+} view_pass;
 enum { VIEW_TIMES = 120 };
 
 /* What a frame shows. */
@@ -74,6 +80,29 @@ void view_wires_boxes(view_wires *wires, const view_state *state, const shape_se
 void view_wires_primitives(view_wires *wires, const view_state *state, const shape_set *set, float width,
                            float height);
 void view_wires_free(view_wires *wires);
+
+/* --- overlay_shaded.c --- */
+
+typedef struct view_corner {
+    float at[2];     /* window coordinates */
+    unsigned colour; /* red in the lowest byte, then green, blue, opacity */
+} view_corner;
+
+/* Ellipsoids on the screen, far ones first, of view_solid_corners() corners each. */
+typedef struct view_solids {
+    view_corner *corners;
+    size_t count; /* ellipsoids */
+} view_solids;
+
+/* The first 3,000 primitives as the state's eye sees them under its sun, those that lie before the eye. Empty where memory
+ * is out; freed by view_solids_free. */
+void view_solids_make(view_solids *solids, const view_state *state, const shape_set *set, float width,
+                      float height);
+void view_solids_free(view_solids *solids);
+int view_solid_corners(void);
+enum { VIEW_SOLID_TRIANGLES = 128 };
+/* The triangles of each, by the numbers of its corners; returns how many there are, at most VIEW_SOLID_TRIANGLES. */
+int view_solid_triangles(int (*triangles)[3]);
 
 #ifdef __cplusplus
 }

@@ -155,7 +155,7 @@ static shape_status draw_image(const view_job *job, const shape_view *view, cons
     if (!status)
         status = shape_gl_light(renderer, light, error);
     const view_plan plan = {
-            .samples = job->samples, .largest = job->largest, .alpha = job->alpha, .progress = cli_progress};
+        .samples = job->samples, .largest = job->largest, .alpha = job->alpha, .progress = cli_progress};
     if (!status)
         status = view_draw_image(renderer, view, &plan, image, error);
     shape_gl_destroy(renderer);

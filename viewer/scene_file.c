@@ -76,8 +76,8 @@ static shape_status add_settings(writer *w, shape_scene_cloud *cloud)
         if (!g->settings[i].given || (row.kind == VIEW_SETTING_FLAG && g->settings[i].number[0] == 0))
             continue;
         view_setting_text(&row, &g->settings[i], text, sizeof text);
-        status = shape_scene_add_option(&cloud->options, row.name, row.kind == VIEW_SETTING_FLAG ? NULL : text,
-                                        w->error);
+        status = shape_scene_add_option(&cloud->options, row.name,
+                                        row.kind == VIEW_SETTING_FLAG ? NULL : text, w->error);
     }
     snprintf(text, sizeof text, "%llu", (unsigned long long)g->seed);
     return status ? status : shape_scene_add_option(&cloud->options, "seed", text, w->error);

@@ -57,8 +57,9 @@ static shape_status visit(void *user, const shape_symbol *symbol, shape_error *e
     return shape_turtle_visit(w->turtle, symbol, error);
 }
 
-static shape_status walk_string(const shape_grammar *grammar, const shape_derive_options *options, view_run *run,
-                                shape_primitives *list, shape_derive_counts *counts, shape_error *error)
+static shape_status walk_string(const shape_grammar *grammar, const shape_derive_options *options,
+                                view_run *run, shape_primitives *list, shape_derive_counts *counts,
+                                shape_error *error)
 {
     walk w = {.turtle = shape_turtle_create(grammar, options, list, error), .run = run};
     if (!w.turtle)
@@ -161,8 +162,7 @@ shape_status view_source_decode(const char *path, const unsigned char *bytes, si
     contents->used = view_generator_none(generator->seed);
     mistakes[0] = 0;
     if (is_grammar(path, bytes, size)) {
-        status = read_grammar(path, shown, bytes, size, generator, run, contents, mistakes, room,
-                              error);
+        status = read_grammar(path, shown, bytes, size, generator, run, contents, mistakes, room, error);
     } else {
         status = shape_neph_decode(bytes, size, &contents->set, error);
         if (status) {
@@ -231,7 +231,8 @@ static shape_status read_scene(const char *path, const unsigned char *bytes, siz
     if (!status)
         status = view_state_check_view(contents->scene, error);
     if (status) /* the decoder has said where */
-        snprintf(mistakes, room, "%s%s%s", contents->scene ? path : "", contents->scene ? ": " : "", error->text);
+        snprintf(mistakes, room, "%s%s%s", contents->scene ? path : "", contents->scene ? ": " : "",
+                 error->text);
     if (!status)
         status = view_run_program(run, arguments, &made, &made_size, mistakes, room, error);
     if (status)

@@ -157,7 +157,8 @@ shape_status view_state_set(const view_state *state, const shape_set *set, const
                             shape_set **made, shape_error *error)
 {
     shape_set *moved = NULL, *edited = NULL;
-    bool before = !morph && shape_motion_is_on(&state->course.motion); /* a morph knows its own clouds alone */
+    bool before =
+        !morph && shape_motion_is_on(&state->course.motion); /* a morph knows its own clouds alone */
     shape_status status = before ? edited_copy(state, set, &edited, error) : SHAPE_OK;
     if (!status)
         status = view_course_set(&state->course, edited ? edited : set, morph, state->time, &moved, error);

@@ -35,7 +35,12 @@ typedef enum view_heat {
 #define VIEW_HEAT_WORDS "none|steps|fetches|candidates|depth"
 
 /* How primitives are shown over the picture. */
-typedef enum view_outline { VIEW_OUTLINE_NONE, VIEW_OUTLINE_WIRES, VIEW_OUTLINE_SHADED, VIEW_OUTLINES } view_outline;
+typedef enum view_outline {
+    VIEW_OUTLINE_NONE,
+    VIEW_OUTLINE_WIRES,
+    VIEW_OUTLINE_SHADED,
+    VIEW_OUTLINES
+} view_outline;
 #define VIEW_OUTLINE_WORDS "none|wires|shaded"
 
 typedef struct view_state {
@@ -51,9 +56,9 @@ typedef struct view_state {
     int method, other_method; /* shape_gl_method; the second for the right half of a split picture */
     int samples, light_grid;
     bool split, boxes;
-    float divider; /* of the split picture, a share of the width */
-    int heat;      /* view_heat */
-    int outlines;  /* view_outline: the primitives */
+    float divider;   /* of the split picture, a share of the width */
+    int heat;        /* view_heat */
+    int outlines;    /* view_outline: the primitives */
     bool difference; /* from the reference, as a map */
     view_generator generator;
     int cloud_count; /* of clouds */

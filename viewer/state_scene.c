@@ -169,8 +169,8 @@ static shape_status save_view(const view_state *state, shape_scene *scene, shape
         char is[TEXT_ROOM], usual[TEXT_ROOM];
         bool has = row_text(&rows[i], state, is), had = row_text(&rows[i], plain, usual);
         if (has && (!had || strcmp(is, usual)))
-            status =
-                shape_scene_add_option(&scene->view, rows[i].name, rows[i].kind == ROW_FLAG ? NULL : is, error);
+            status = shape_scene_add_option(&scene->view, rows[i].name, rows[i].kind == ROW_FLAG ? NULL : is,
+                                            error);
     }
     free(plain);
     return status;
@@ -178,7 +178,8 @@ static shape_status save_view(const view_state *state, shape_scene *scene, shape
 
 static shape_status wrong(const view_row *row, const char *text, const char *expected, shape_error *error)
 {
-    return shape_error_set(error, SHAPE_ERROR_FORMAT, "view.%s \"%.60s\": expected %s", row->name, text, expected);
+    return shape_error_set(error, SHAPE_ERROR_FORMAT, "view.%s \"%.60s\": expected %s", row->name, text,
+                           expected);
 }
 
 static bool read_numbers(const view_row *row, const char *text, int count, double *numbers)
@@ -244,8 +245,8 @@ static shape_status load_row(const view_row *row, const char *text, view_state *
     return SHAPE_OK;
 }
 
-shape_status view_state_load_view(view_state *state, const shape_scene *scene, bool (*given)(const char *name),
-                                  shape_error *error)
+shape_status view_state_load_view(view_state *state, const shape_scene *scene,
+                                  bool (*given)(const char *name), shape_error *error)
 {
     for (size_t i = 0; i < scene->view.count; i++) {
         const shape_scene_option *option = &scene->view.items[i];
@@ -253,7 +254,8 @@ shape_status view_state_load_view(view_state *state, const shape_scene *scene, b
         while (row < ROWS && strcmp(rows[row].name, option->name))
             row++;
         if (row == ROWS)
-            return shape_error_set(error, SHAPE_ERROR_FORMAT, "view: there is no key \"%.40s\"", option->name);
+            return shape_error_set(error, SHAPE_ERROR_FORMAT, "view: there is no key \"%.40s\"",
+                                   option->name);
         bool skip = given && given(option->name);
         shape_status status = skip ? SHAPE_OK : load_row(&rows[row], option->text, state, error);
         if (status)

@@ -18,8 +18,8 @@ double view_neat(float value);
 
 /* Takes over what "view" says, but for the names that `given` returns true for (NULL: none). Errors: the name and what
  * is wrong; the state then has some of it. */
-shape_status view_state_load_view(view_state *state, const shape_scene *scene, bool (*given)(const char *name),
-                                  shape_error *error);
+shape_status view_state_load_view(view_state *state, const shape_scene *scene,
+                                  bool (*given)(const char *name), shape_error *error);
 /* Checks it and changes nothing. */
 shape_status view_state_check_view(const shape_scene *scene, shape_error *error);
 /* Takes over light, camera and exposure, as far as the scene has any. */

@@ -81,7 +81,8 @@ shape_status view_things_read(const shape_scene *scene, const char *scene_path, 
                               const view_more_things *more, shape_opaque **opaque, shape_error *error)
 {
     *opaque = NULL;
-    bool any = (scene && (scene->mesh_count || scene->ground_given)) || (more->list && more->list->mesh_count) || more->has_ground;
+    bool any = (scene && (scene->mesh_count || scene->ground_given)) ||
+               (more->list && more->list->mesh_count) || more->has_ground;
     if (!any)
         return SHAPE_OK;
     shape_opaque *made = shape_opaque_create(error);

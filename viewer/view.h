@@ -71,7 +71,7 @@ typedef struct view_plan {
     int largest; /* side of what is drawn at once [pixels]; 0: what the GPU can */
     bool alpha;
     void (*progress)(const char *what, double done); /* NULL: none */
-    bool (*go_on)(void *context, double done);       /* false ends the work: SHAPE_ERROR_CANCELLED; NULL: go on */
+    bool (*go_on)(void *context, double done); /* false ends the work: SHAPE_ERROR_CANCELLED; NULL: go on */
     void *context;
 } view_plan;
 

@@ -50,7 +50,8 @@ static shape_status read_edit(scene_reader *r, const json_t *value, shape_scene 
         return scene_wrong(r, "names no cloud (write \"cloud\": \"its name\")");
     for (size_t i = 0; i + 1 < scene->edit_count; i++)
         if (!strcmp(scene->edits[i].cloud, edit->cloud))
-            return scene_wrong(r, "the cloud \"%.60s\" is edited already (make one edit of both)", edit->cloud);
+            return scene_wrong(r, "the cloud \"%.60s\" is edited already (make one edit of both)",
+                               edit->cloud);
     return SHAPE_OK;
 }
 

@@ -73,9 +73,12 @@ static shape_status sun_day(scene_reader *r, const json_t *value, void *to)
     return scene_read_object(r, value, day_members, &scene->day);
 }
 
-static const scene_member sun_members[] = {{"azimuth", sun_azimuth, 0},     {"height", sun_height, 0},
-                                           {"direction", sun_direction, 0}, {"irradiance", sun_irradiance, 0},
-                                           {"angle", sun_angle, 0},         {"day", sun_day, 0},
+static const scene_member sun_members[] = {{"azimuth", sun_azimuth, 0},
+                                           {"height", sun_height, 0},
+                                           {"direction", sun_direction, 0},
+                                           {"irradiance", sun_irradiance, 0},
+                                           {"angle", sun_angle, 0},
+                                           {"day", sun_day, 0},
                                            {0}};
 
 shape_status scene_sun(scene_reader *r, const json_t *value, void *to)

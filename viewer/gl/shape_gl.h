@@ -97,7 +97,7 @@ void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width,
 /* What a heat map shows of each pixel. */
 typedef enum shape_gl_heat {
     SHAPE_GL_HEAT_STEPS,
-    SHAPE_GL_HEAT_FETCHES,    /* texels read */
+    SHAPE_GL_HEAT_FETCHES, /* texels read */
     SHAPE_GL_HEAT_CANDIDATES, /* primitives whose support the ray hits, of the methods that look at primitives; the
                                  default method marches baked density, and has none */
     SHAPE_GL_HEAT_DEPTH       /* optical depth of the clouds; where something opaque stands it is infinite */

@@ -67,12 +67,12 @@ typedef struct shape_scene_mesh {
 
 /* One entry of "edits": a cloud of the scene, after all are made, by its name; each may be edited once. */
 typedef struct shape_scene_edit {
-    char *note;                      /* NULL: none */
-    char *cloud;                     /* its name, as neph-info tells it */
-    shape_scene_options medium;      /* medium options over those that it has */
-    double translate[3], rotate[3];  /* metres; degrees about x, then y, then z */
-    double scale;                    /* 1e-6 to 1e6; both this and rotate about the cloud's own origin */
-    bool hidden;                     /* it is left out */
+    char *note;                     /* NULL: none */
+    char *cloud;                    /* its name, as neph-info tells it */
+    shape_scene_options medium;     /* medium options over those that it has */
+    double translate[3], rotate[3]; /* metres; degrees about x, then y, then z */
+    double scale;                   /* 1e-6 to 1e6; both this and rotate about the cloud's own origin */
+    bool hidden;                    /* it is left out */
 } shape_scene_edit;
 
 /* What is not given is left to the program, whose defaults docs/scene.md repeats. */
@@ -84,17 +84,19 @@ typedef struct shape_scene {
     size_t mesh_count, mesh_capacity;
     bool ground_given;
     double ground, ground_albedo[3]; /* level ground, as opaque as meshes: its height [m], +-1e6; 0 to 1 */
-    shape_scene_options medium; /* overrides for all clouds, before each entry's own */
+    shape_scene_options medium;      /* overrides for all clouds, before each entry's own */
     shape_scene_edit *edits;
     size_t edit_count, edit_capacity;
-    shape_scene_options view; /* options of neph-view: method, quality, what moves, what is shown for judging */
-    char *compare;            /* a file that neph-view shows right of the first; NULL: none */
+    shape_scene_options
+        view;      /* options of neph-view: method, quality, what moves, what is shown for judging */
+    char *compare; /* a file that neph-view shows right of the first; NULL: none */
 
     bool sun_given, sun_none, sun_irradiance_given, sun_angle_given;
     double sun[2];            /* azimuth from +z towards +x, height; degrees; +-360, +-90 */
     double sun_irradiance[3]; /* on a plane that faces it, 0 to 1e9 */
     double sun_angle;         /* diameter, degrees, 0 to 90 */
-    bool day_given;           /* the sun goes by the time of day, and the irradiance is what the air has not taken yet */
+    bool
+        day_given; /* the sun goes by the time of day, and the irradiance is what the air has not taken yet */
     shape_day day;
 
     bool lamp_given;
