@@ -138,40 +138,11 @@ ivec2 tile_clouds_at(ivec2 pixel)
 
 ivec2 tile_clouds() { return tile_clouds_at(ivec2(gl_FragCoord.xy)); }
 
-// ONE_CLOUD: which of its primitives a tile may see, nearest first: offset and count, then content and least distance.
-#ifdef ONE_CLOUD
-uniform highp sampler2D tile_primitives;
-uniform int tiles_listed; // 0: there are no such lists (too long), the tree is walked
-
-void gather_tile(vec3 direction, float t_min, float t_max)
-{
-    cloud_index = -1;
-    load_cloud(0, direction);
-    ivec2 tile = ivec2(gl_FragCoord.xy) / TILE;
-    ivec2 list = ivec2(linear_texel(tile_primitives, tile.y * tile_columns + tile.x).xy);
-    for (int i = 0; i < list.y; i++, work++) {
-        vec2 item = linear_texel(tile_primitives, list.x + i).xy;
-        vec3 hit;
-        fetches += 1.0;
-        if (item.y >= window_end)
-            break;
-        if (support_intersect(int(item.x), hit) && hit.y > t_min && hit.x < t_max)
-            insert_candidate(vec4(hit, 0.0));
-    }
-}
-#endif
-
 void gather(vec3 direction, float t_min, float t_max)
 {
     candidate_count = 0;
     window_end = t_max;
     gather_start = t_min;
-#ifdef ONE_CLOUD
-    if (tiles_listed == 1) {
-        gather_tile(direction, t_min, t_max);
-        return;
-    }
-#endif
     ivec2 list = tile_clouds();
     for (int i = 0; i < list.y; i++, work++)
         gather_cloud(int(linear_texel(tiles, list.x + i).x), direction, t_min, t_max);

@@ -1,4 +1,7 @@
 // The view pass: the joined intervals of the supports, marched once, with the analytic field and exponential segments.
+#ifdef LISTED
+#define CANDIDATES 64
+#endif
 #include "field/cloud.glsl"
 #include "field/noise.glsl"
 #include "field/density.glsl"
@@ -27,10 +30,12 @@ vec3 ray;
 float random_start;
 float reached; // all before it is done
 
-float step_length(float t)
+float step_length_of(float t, float deep)
 {
-    return max(step_scale * cloud_step, step_growth * t) * (1.0 + step_deep * (1.0 - transmittance));
+    return max(step_scale * cloud_step, step_growth * t) * (1.0 + deep * (1.0 - transmittance));
 }
+
+float step_length(float t) { return step_length_of(t, step_deep); }
 
 // Source function of the loaded cloud at p, towards the eye: radiance per unit of extinction.
 vec3 light_at(vec3 p)
@@ -108,7 +113,8 @@ void march_mixed(int first, int end, float t1, bool crowded)
 {
     load_cloud(int(candidate[first].w), ray);
     while (reached < t1 && going_on()) {
-        float width = min(step_length(reached), t1 - reached), extinction;
+        // Borders lie within the interval, so steps may not get as long.
+        float width = min(step_length_of(reached, min(step_deep, 1.0)), t1 - reached), extinction;
         vec3 source;
         mixed_at(first, end, reached + width * random_start, crowded, extinction, source);
         steps += 1.0;
@@ -121,7 +127,7 @@ void march_mixed(int first, int end, float t1, bool crowded)
 // Joins the window's candidates into intervals and marches each.
 void march_window()
 {
-    for (int next = 0; next < candidate_count && going_on();) {
+    for (int next = 0; next < candidate_count && candidate[next].x < window_end && going_on();) {
         int first = next;
         bool alone = true;
         float end = candidate[first].y;
@@ -143,6 +149,8 @@ void march_window()
         reached = window_end;
 }
 
+// LISTED: crowds are left to the next part.
+#ifndef LISTED
 // More supports hold this point than the list has room for: by the tree, to where the last of the known ones ends. Up to
 // there the interval is joined, whatever else it holds.
 void march_crowd(float last)
@@ -168,6 +176,11 @@ void march_crowd(float last)
     march_mixed(0, candidate_count, until, true);
 #endif
 }
+#endif
+
+#ifdef LISTED
+#include "view/march_list.glsl"
+#endif
 
 void main()
 {
@@ -178,6 +191,7 @@ void main()
     fetches = steps = candidates_seen = reached = 0.0;
     work = 0;
     work_end = 0; // not known before the first look
+#ifndef LISTED
     if (resume == 1) {
         vec4 last = texelFetch(part_work, ivec2(gl_FragCoord.xy), 0);
         vec4 light = texelFetch(part_radiance, ivec2(gl_FragCoord.xy), 0);
@@ -192,6 +206,10 @@ void main()
         reached = last.z;
         candidates_seen = last.w;
     }
+#endif
+#ifdef LISTED
+    march_list(ray_end);
+#else
     while (reached < ray_end && going_on()) {
         float until = ray_end;
         if (window_length < ray_end) {
@@ -210,6 +228,7 @@ void main()
         else
             march_window();
     }
+#endif
     if (reached < ray_end && transmittance > transmittance_end) {
         radiance_out = vec4(radiance, transmittance);
         work_out = vec4(steps, fetches, reached, candidates_seen);

@@ -75,9 +75,10 @@ shape_status gl_volumes_load(gl_scene *scene, const shape_volume *volume, shape_
 typedef struct gl_tiles {
     GLuint lists; /* offset and count a tile, then numbers of clouds, as a float texture */
     GLuint order; /* the tiles: those without a cloud, with one, with several; column, row, first cloud */
-    GLuint
-        primitives; /* of a single cloud: offset and count a tile, then content and least distance, nearest first */
-    bool listed; /* whether there are such lists */
+    GLuint primitives; /* of a single cloud, see tile_primitives.c */
+    bool listed;       /* whether there are such lists */
+    int list_columns;  /* of their tiles */
+    float list_scale;  /* see shaders/view/march_list.glsl */
     int columns, empty_count, one_count, several_count;
 } gl_tiles;
 
@@ -88,6 +89,8 @@ void gl_tiles_free(gl_tiles *tiles);
 
 /* --- tile_primitives.c --- */
 
+/* Whether a volume is one that lists are made for: a single cloud of primitives. */
+bool gl_tiles_can_list(const shape_volume *volume);
 /* Lists of a single cloud's primitives for the tiles; none where a list would be longer than the tree's walk. */
 shape_status gl_tiles_list_primitives(gl_tiles *tiles, const shape_volume *volume, const shape_view *view,
                                       const shape_gl_part *part, const shape_camera *camera,
@@ -282,8 +285,10 @@ struct shape_gl_renderer {
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
-    int view_kind; /* which scenes the view program is for, see prepare_program */
-    GLuint view_program, tonemap, density, empty_array;
+    /* By trees, by lists of primitives, and which volumes each is for (passes.c). */
+    GLuint view_programs[2];
+    int view_kinds[2];
+    GLuint tonemap, density, empty_array;
     GLuint copy, heat, query;
     shape_gl_part part;
     gl_target mean, parts[2]; /* the picture; two to draw a long sample in parts, each from the other */
@@ -300,6 +305,10 @@ void gl_begin_mean(int sample);
 void gl_begin_mix(float share);
 /* Steps, candidates and starts of a method. */
 void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GLuint program);
+
+/* Uses the view program, by lists or by trees, and tells it all that it may ask for; *used gets it. */
+shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
+                         shape_error *error);
 
 /* --- refine.c --- */
 
@@ -324,9 +333,9 @@ void gl_preview_free(gl_preview *preview);
 
 /* --- parts.c: the exact method --- */
 
-/* Draws a sample by the view program, which is set up, in parts: a part stops a pixel after some work and says where;
- * the next goes on from there, until all are finished. */
-shape_status gl_draw_in_parts(shape_gl_renderer *renderer, int sample, shape_error *error);
+/* Draws a sample in parts: a part stops a pixel after some work and says where; the next goes on from there, until all are
+ * finished. The first one reads lists of primitives, where there are any, the others walk trees. */
+shape_status gl_draw_in_parts(shape_gl_renderer *renderer, const gl_frame *frame, shape_error *error);
 
 /* --- uniforms.c: what shaders are told; the program is in use --- */
 

@@ -22,10 +22,9 @@ static bool unfinished(const shape_gl_renderer *renderer, const gl_target *part,
     return any;
 }
 
-shape_status gl_draw_in_parts(shape_gl_renderer *renderer, int sample, shape_error *error)
+shape_status gl_draw_in_parts(shape_gl_renderer *renderer, const gl_frame *frame, shape_error *error)
 {
     enum { MOST_PARTS = 100000 };
-    GLuint program = renderer->view_program;
     gl_target *part = &renderer->parts[0], *other = &renderer->parts[1];
     bool more = false;
     int parts = 0;
@@ -33,7 +32,10 @@ shape_status gl_draw_in_parts(shape_gl_renderer *renderer, int sample, shape_err
         if (++parts > MOST_PARTS)
             return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                    "the exact view takes too long here (choose --method default)");
-        glUseProgram(program);
+        GLuint program;
+        shape_status status = gl_use_view(renderer, frame, !more && frame->tiles->listed, &program, error);
+        if (status)
+            return status;
         glBindFramebuffer(GL_FRAMEBUFFER, part->framebuffer);
         gl_set_int(program, "resume", more);
         gl_bind(program, "part_radiance", 12, GL_TEXTURE_2D, more ? other->textures[0] : 0);
@@ -46,7 +48,7 @@ shape_status gl_draw_in_parts(shape_gl_renderer *renderer, int sample, shape_err
     } while (more);
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
     use_copy(renderer, other, false);
-    gl_begin_mean(sample);
+    gl_begin_mean(frame->sample);
     gl_draw_triangle(renderer);
     glDisable(GL_BLEND);
     return SHAPE_OK;

@@ -84,7 +84,8 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     gl_pool_free(&renderer->pool);
     gl_preview_free(&renderer->preview);
     gl_surface_free(&renderer->surface);
-    glDeleteProgram(renderer->view_program);
+    glDeleteProgram(renderer->view_programs[0]);
+    glDeleteProgram(renderer->view_programs[1]);
     glDeleteProgram(renderer->tonemap);
     glDeleteProgram(renderer->density);
     glDeleteProgram(renderer->copy);
@@ -120,26 +121,52 @@ static bool is_plain(const shape_volume *volume)
     return true;
 }
 
-/* The view program of the methods that have one for the whole picture, as fits the volume. */
+/* What the shaders of the whole picture may leave out for a volume: a number for each such set of lines. */
+static int view_defines(const shape_volume *volume, char *defines, size_t size)
+{
+    const shape_volume_cloud *c = volume->cloud_count == 1 ? &volume->clouds[0] : NULL;
+    bool plain = is_plain(volume), spheres = c && !c->list->ellipsoid_count;
+    int octaves = c ? c->field.octaves : 0;
+    snprintf(defines, size, "%s%s%s", plain ? "#define FIELD_PLAIN\n" : "", c ? "#define ONE_CLOUD\n" : "",
+             spheres ? "#define SPHERES_ONLY\n" : "");
+    if (c)
+        snprintf(defines + strlen(defines), size - strlen(defines), "#define OCTAVES %d\n", octaves);
+    return 1 + plain + 2 * spheres + 4 * octaves;
+}
+
+/* The view program of the methods that have one for the whole picture, as fits the volume; listed: the one that reads
+ * lists of primitives. */
+static shape_status find_program(shape_gl_renderer *renderer, bool listed, GLuint *program,
+                                 shape_error *error)
+{
+    enum { ROOM = 160 };
+    char defines[ROOM];
+    int kind = view_defines(renderer->volume, defines, ROOM);
+    GLuint *known = &renderer->view_programs[listed];
+    if (renderer->view_kinds[listed] != kind) {
+        glDeleteProgram(*known);
+        *known = 0;
+        renderer->view_kinds[listed] = 0;
+        if (listed)
+            strcat(defines, "#define LISTED\n");
+        shape_status status = gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
+                                                view_shader(renderer), defines, known, error);
+        if (status)
+            return status;
+        renderer->view_kinds[listed] = kind;
+    }
+    *program = *known;
+    return SHAPE_OK;
+}
+
+/* Compiles what the first picture will need. */
 static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *error)
 {
-    const shape_volume *volume = renderer->volume;
-    bool plain = is_plain(volume), one = volume->cloud_count == 1;
-    int octaves = one ? volume->clouds[0].field.octaves : 0, kind = plain + 2 * octaves;
-    if (renderer->options.method == SHAPE_GL_DEFAULT ||
-        (renderer->view_program && renderer->view_kind == kind))
+    GLuint program;
+    if (renderer->options.method == SHAPE_GL_DEFAULT)
         return SHAPE_OK;
-    char defines[100];
-    snprintf(defines, sizeof defines, "%s%s", plain ? "#define FIELD_PLAIN\n" : "",
-             one ? "#define ONE_CLOUD\n" : "");
-    if (one)
-        snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "#define OCTAVES %d\n",
-                 octaves);
-    glDeleteProgram(renderer->view_program);
-    renderer->view_program = 0;
-    renderer->view_kind = kind;
-    return gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert", view_shader(renderer),
-                             defines, &renderer->view_program, error);
+    bool listed = renderer->options.method == SHAPE_GL_EXACT && gl_tiles_can_list(renderer->volume);
+    return find_program(renderer, listed, &program, error);
 }
 
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
@@ -221,11 +248,11 @@ void gl_set_method(const shape_gl_renderer *r, const shape_view *view, GLuint pr
     double pixel = 2 * tan(view->fov * 3.14159265358979 / 360) / view->height;
     /* exact: cells of the noise; default: voxels. */
     gl_set_float(program, "step_scale", exact ? 0.4f : 1.5f);
-    gl_set_float(program, "step_deep", exact ? 1.0f : 0.0f);
+    gl_set_float(program, "step_deep", exact ? 3.0f : 0.0f);
     gl_set_int(program, "seed", (int)(uint32_t)(shape_hash(r->options.seed) ^ shape_hash(1)));
     gl_set_float(program, "window_length", r->window_length);
     gl_set_float(program, "step_depth", 0.25f);
-    gl_set_float(program, "step_growth", (float)pixel * (exact ? 0.5f : 2.0f));
+    gl_set_float(program, "step_growth", (float)pixel * (exact ? 1.5f : 2.0f));
     gl_set_float(program, "transmittance_end", exact ? 1e-4f : 4e-3f);
     gl_set_int(program, "paper_sweep", r->options.method == SHAPE_GL_PAPER_NDT);
     gl_set_int(program, "paper_lod", r->options.paper_lod);
@@ -251,10 +278,13 @@ void gl_begin_mean(int sample)
     gl_begin_mix(1.0f / (float)(sample + 1));
 }
 
-/* A sample of the other methods: one program over the whole picture. */
-static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *frame, shape_error *error)
+shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
+                         shape_error *error)
 {
-    GLuint program = renderer->view_program;
+    GLuint program;
+    shape_status status = find_program(renderer, listed, &program, error);
+    if (status)
+        return status;
     glUseProgram(program);
     glViewport(0, 0, frame->part->width, frame->part->height);
     gl_set_scene(&renderer->scene, program);
@@ -264,10 +294,19 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     gl_set_camera(frame, program);
     gl_set_method(renderer, frame->view, program);
     gl_set_surface(renderer, program);
-    if (frame->tiles->listed)
-        gl_set_float(program, "window_length", 1e30f); /* lists are in order: windows need no limit */
+    *used = program;
+    return SHAPE_OK;
+}
+
+/* A sample of the other methods: one program over the whole picture. */
+static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *frame, shape_error *error)
+{
+    GLuint program;
     if (in_parts(renderer))
-        return gl_draw_in_parts(renderer, frame->sample, error);
+        return gl_draw_in_parts(renderer, frame, error);
+    shape_status status = gl_use_view(renderer, frame, false, &program, error);
+    if (status)
+        return status;
     glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
     gl_begin_mean(frame->sample);
     gl_draw_triangle(renderer);

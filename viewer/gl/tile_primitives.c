@@ -1,19 +1,38 @@
-/* Which primitives of a single cloud a tile of the picture may see, nearest first: the exact view asks these rather than
- * walk the tree in every pixel. Each support is taken as the ball around it. */
+/* Which primitives of a single cloud the tiles of the picture may see, nearest first: the exact view reads these
+ * (shaders/view/march_list.glsl) rather than walk the tree in every pixel. Each support is taken as the ball around it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "gl_private.h"
 
-enum { TILE = 32, MOST_IN_TILE = 2000 };
+enum { TILE = 8, MOST_IN_TILE = 2000, MOST_TEXELS = 8000000 };
 
 typedef struct ball {
-    float content, nearest; /* nearest: metres of the world to where a ray can enter at the soonest */
-    int x0, y0, x1, y1;     /* tiles, inclusive */
+    float item[4]; /* centre relative to the eye [m, cloud's frame], radius; of an ellipsoid negative */
+    float nearest; /* no ray of the world meets it before this [m] */
+    int ellipsoid;
+    int x0, y0, x1, y1; /* tiles, inclusive */
 } ball;
 
-/* How much longer than in the cloud's frame a vector can be in the world. */
+/* What is looked at, and from where. */
+typedef struct looking {
+    const shape_volume_cloud *cloud;
+    const shape_view *view;
+    const shape_gl_part *part;
+    const shape_camera *camera;
+    shape_dvec3 eye;       /* in the cloud's frame */
+    double stretch, scale; /* most, least metres of the world a metre of the cloud's frame */
+    int columns, rows;
+} looking;
+
+/* Where things stand in the lists' texture. */
+typedef struct list_layout {
+    size_t tiles, items,
+        ellipsoids; /* texels of each: the tiles come first, then the items, then the ellipsoids */
+} list_layout;
+
+/* How much longer a vector can become. */
 static double stretch(const shape_frame *f)
 {
     double sum = 0;
@@ -57,21 +76,24 @@ static void cover_side(double side, double depth, double radius, double half, in
     *high = (int)fmax(fmin(floor((to + 1) / TILE), tiles - 1), -1);
 }
 
-static ball see(const shape_volume_cloud *c, shape_vec3 centre, double radius, float content,
-                const shape_view *view, const shape_gl_part *part, const shape_camera *camera)
+static ball see(const looking *at, shape_vec3 centre, double radius, int ellipsoid)
 {
-    shape_dvec3 p = shape_frame_point(&c->frame, shape_dvec3_make(centre.x, centre.y, centre.z));
-    p = shape_dvec3_sub(p, camera->origin);
-    double width = shape_dvec3_length(camera->right), height = shape_dvec3_length(camera->up);
-    int columns = (part->width + TILE - 1) / TILE, rows = (part->height + TILE - 1) / TILE;
-    ball b = {.content = content};
-    double distance = shape_dvec3_length(p), depth = shape_dvec3_dot(p, camera->forward);
-    radius = radius * (1 + 1e-4) + 1e-5 * distance; /* single precision in the shader */
-    b.nearest = (float)fmax(distance - radius, 0);
-    cover_side(shape_dvec3_dot(p, camera->right) / width, depth, radius, width, view->width, part->x, columns,
-               &b.x0, &b.x1);
-    cover_side(shape_dvec3_dot(p, camera->up) / height, depth, radius, height, view->height, part->y, rows,
-               &b.y0, &b.y1);
+    shape_dvec3 c = {(double)centre.x, (double)centre.y, (double)centre.z};
+    shape_dvec3 from_eye = shape_dvec3_sub(c, at->eye);
+    ball b = {.ellipsoid = ellipsoid};
+    b.item[0] = (float)from_eye.x, b.item[1] = (float)from_eye.y, b.item[2] = (float)from_eye.z;
+    b.item[3] = (float)(ellipsoid >= 0 ? -radius * (1 + 1e-4) : radius);
+    b.nearest = (float)((shape_dvec3_length(from_eye) - radius) * at->scale);
+
+    shape_dvec3 p = shape_dvec3_sub(shape_frame_point(&at->cloud->frame, c), at->camera->origin);
+    double width = shape_dvec3_length(at->camera->right), height = shape_dvec3_length(at->camera->up);
+    double depth = shape_dvec3_dot(p, at->camera->forward);
+    /* The shader has single precision. */
+    radius = radius * at->stretch * (1 + 1e-4) + 1e-5 * shape_dvec3_length(p);
+    cover_side(shape_dvec3_dot(p, at->camera->right) / width, depth, radius, width, at->view->width,
+               at->part->x, at->columns, &b.x0, &b.x1);
+    cover_side(shape_dvec3_dot(p, at->camera->up) / height, depth, radius, height, at->view->height,
+               at->part->y, at->rows, &b.y0, &b.y1);
     return b;
 }
 
@@ -80,83 +102,131 @@ static int compare(const void *a, const void *b)
     const ball *x = a, *y = b;
     if (x->nearest != y->nearest)
         return x->nearest < y->nearest ? -1 : 1;
-    return (x->content > y->content) - (x->content < y->content);
+    if (x->ellipsoid != y->ellipsoid)
+        return x->ellipsoid < y->ellipsoid ? -1 : 1;
+    return memcmp(x->item, y->item, sizeof x->item);
 }
 
-static void see_all(const shape_volume_cloud *c, const shape_view *view, const shape_gl_part *part,
-                    const shape_camera *camera, ball *balls)
+static void see_all(const looking *at, ball *balls)
 {
-    double scale = stretch(&c->frame) * (double)c->support;
-    for (size_t i = 0; i < c->list->sphere_count; i++) {
-        const shape_sphere *s = &c->list->spheres[i];
-        *balls++ = see(c, shape_vec3_make(s->x, s->y, s->z), scale * (double)s->radius, (float)(i + 1), view,
-                       part, camera);
+    const shape_primitives *list = at->cloud->list;
+    double support = (double)at->cloud->support;
+    for (size_t i = 0; i < list->sphere_count; i++) {
+        const shape_sphere *s = &list->spheres[i];
+        *balls++ = see(at, shape_vec3_make(s->x, s->y, s->z), support * (double)s->radius, -1);
     }
-    for (size_t i = 0; i < c->list->ellipsoid_count; i++) {
-        const shape_ellipsoid *e = &c->list->ellipsoids[i];
+    for (size_t i = 0; i < list->ellipsoid_count; i++) {
+        const shape_ellipsoid *e = &list->ellipsoids[i];
         double radius = fmax((double)e->a, fmax((double)e->b, (double)e->c));
-        *balls++ =
-            see(c, shape_vec3_make(e->x, e->y, e->z), scale * radius, -(float)(i + 1), view, part, camera);
+        *balls++ = see(at, shape_vec3_make(e->x, e->y, e->z), support * radius, (int)i);
     }
 }
 
-/* Writes the lists: counts first, then the entries, in the balls' order. NULL where a list is too long. */
-static float *write_lists(const ball *balls, size_t count, int columns, size_t tiles, size_t *texels)
+/* An ellipsoid as three rows: from the cloud's frame to the one in which it is the unit ball; w: the eye there. */
+static void write_ellipsoid(const shape_ellipsoid *e, shape_dvec3 eye, float *rows)
 {
-    size_t *next = calloc(tiles + 1, sizeof *next), total = 0, longest = 0;
-    float *lists = NULL;
-    for (size_t i = 0; i < count && next; i++)
-        for (int y = balls[i].y0; y <= balls[i].y1; y++)
-            for (int x = balls[i].x0; x <= balls[i].x1; x++, total++) {
-                size_t length = ++next[y * columns + x];
-                longest = length > longest ? length : longest;
-            }
-    if (next && longest <= MOST_IN_TILE)
-        lists = calloc((tiles + total + 1) * 4, sizeof *lists);
-    *texels = longest <= MOST_IN_TILE ? tiles + total : 0;
-    if (lists) {
-        size_t offset = tiles;
-        for (size_t i = 0; i < tiles; i++) {
-            lists[4 * i] = (float)offset;
-            lists[4 * i + 1] = (float)next[i];
-            size_t length = next[i];
-            next[i] = offset;
-            offset += length;
+    double turn[3][3], axes[3] = {(double)e->a, (double)e->b, (double)e->c};
+    double v[3] = {eye.x - (double)e->x, eye.y - (double)e->y, eye.z - (double)e->z};
+    shape_quat_matrix(e->q, turn);
+    for (int row = 0; row < 3; row++, rows += 4) {
+        double w = 0;
+        for (int k = 0; k < 3; k++) {
+            rows[k] = (float)(turn[k][row] / axes[row]);
+            w += turn[k][row] / axes[row] * v[k];
         }
-        for (size_t i = 0; i < count; i++)
-            for (int y = balls[i].y0; y <= balls[i].y1; y++)
-                for (int x = balls[i].x0; x <= balls[i].x1; x++) {
-                    float *entry = lists + 4 * next[y * columns + x]++;
-                    entry[0] = balls[i].content;
-                    entry[1] = balls[i].nearest;
-                }
+        rows[3] = (float)w;
     }
-    free(next);
-    return lists;
+}
+
+/* Counts the texels of each tile's list into counts. False where lists are too long. */
+static bool count_items(const looking *at, const ball *balls, size_t count, size_t *counts,
+                        list_layout *layout)
+{
+    size_t longest = 0;
+    layout->items = 0;
+    for (size_t i = 0; i < count && layout->items <= MOST_TEXELS; i++)
+        for (int y = balls[i].y0; y <= balls[i].y1; y++)
+            for (int x = balls[i].x0; x <= balls[i].x1; x++) {
+                size_t texels = balls[i].ellipsoid >= 0 ? 2 : 1, *length = &counts[y * at->columns + x];
+                *length += texels;
+                layout->items += texels;
+                longest = *length > longest ? *length : longest;
+            }
+    return longest <= MOST_IN_TILE && layout->items <= MOST_TEXELS;
+}
+
+/* Offsets and lengths of the tiles' lists, the lists in the balls' order, and the ellipsoids. */
+static void write_lists(const looking *at, const ball *balls, size_t count, size_t *next,
+                        const list_layout *layout, float *lists)
+{
+    size_t offset = layout->tiles, shapes = layout->tiles + layout->items;
+    for (size_t i = 0; i < layout->tiles; i++) {
+        lists[4 * i] = (float)offset;
+        lists[4 * i + 1] = (float)next[i];
+        size_t length = next[i];
+        next[i] = offset;
+        offset += length;
+    }
+    for (size_t i = 0; i < count; i++)
+        for (int y = balls[i].y0; y <= balls[i].y1; y++)
+            for (int x = balls[i].x0; x <= balls[i].x1; x++) {
+                float *entry = lists + 4 * next[y * at->columns + x]++;
+                memcpy(entry, balls[i].item, sizeof balls[i].item);
+                if (balls[i].ellipsoid < 0)
+                    continue;
+                next[y * at->columns + x]++;
+                entry[4] = (float)(shapes + 3 * (size_t)balls[i].ellipsoid);
+            }
+    for (size_t i = 0; i < at->cloud->list->ellipsoid_count; i++)
+        write_ellipsoid(&at->cloud->list->ellipsoids[i], at->eye, lists + 4 * (shapes + 3 * i));
+}
+
+static shape_status make_lists(gl_tiles *tiles, const looking *at, ball *balls, size_t count, size_t *next,
+                               shape_error *error)
+{
+    list_layout layout = {(size_t)at->columns * (size_t)at->rows, 0, 3 * at->cloud->list->ellipsoid_count};
+    see_all(at, balls);
+    qsort(balls, count, sizeof *balls, compare);
+    if (!count_items(at, balls, count, next, &layout))
+        return SHAPE_OK;
+    size_t texels = layout.tiles + layout.items + layout.ellipsoids;
+    float *lists = calloc(texels * 4 + 4, sizeof *lists);
+    if (!lists)
+        return shape_error_memory(error);
+    shape_status status = SHAPE_OK;
+    write_lists(at, balls, count, next, &layout, lists);
+    tiles->primitives = gl_float_texture(lists, texels, &status, error);
+    tiles->listed = !status;
+    tiles->list_columns = at->columns;
+    tiles->list_scale = (float)at->scale;
+    free(lists);
+    return status;
+}
+
+bool gl_tiles_can_list(const shape_volume *volume)
+{
+    return volume->cloud_count == 1 && volume->clouds[0].field.model != SHAPE_MODEL_GRID;
 }
 
 shape_status gl_tiles_list_primitives(gl_tiles *tiles, const shape_volume *volume, const shape_view *view,
                                       const shape_gl_part *part, const shape_camera *camera,
                                       shape_error *error)
 {
-    if (volume->cloud_count != 1 || volume->clouds[0].field.model == SHAPE_MODEL_GRID)
+    if (!gl_tiles_can_list(volume))
         return SHAPE_OK;
     const shape_volume_cloud *c = &volume->clouds[0];
-    size_t count = shape_primitives_count(c->list), texels = 1;
-    size_t tile_count = (size_t)tiles->columns * (size_t)((part->height + TILE - 1) / TILE);
-    ball *balls = malloc((count + 1) * sizeof *balls);
-    float *lists = NULL;
-    if (balls) {
-        see_all(c, view, part, camera, balls);
-        qsort(balls, count, sizeof *balls, compare);
-        lists = write_lists(balls, count, tiles->columns, tile_count, &texels);
-    }
-    shape_status status = balls && (lists || !texels) ? SHAPE_OK : shape_error_memory(error);
-    if (lists) {
-        tiles->primitives = gl_float_texture(lists, texels, &status, error);
-        tiles->listed = !status;
-    }
-    free(lists);
+    looking at = {.cloud = c, .view = view, .part = part, .camera = camera};
+    at.eye = shape_frame_point(&c->inverse, camera->origin);
+    at.stretch = stretch(&c->frame);
+    at.scale = 1 / stretch(&c->inverse);
+    at.columns = (part->width + TILE - 1) / TILE;
+    at.rows = (part->height + TILE - 1) / TILE;
+    size_t count = shape_primitives_count(c->list);
+    ball *balls = calloc(count + 1, sizeof *balls);
+    size_t *next = calloc((size_t)at.columns * (size_t)at.rows + 1, sizeof *next);
+    shape_status status =
+        balls && next ? make_lists(tiles, &at, balls, count, next, error) : shape_error_memory(error);
     free(balls);
+    free(next);
     return status;
 }

@@ -96,5 +96,6 @@ void gl_set_tiles(const gl_tiles *tiles, GLuint program)
     gl_bind(program, "tile_list", 15, GL_TEXTURE_2D, tiles->order);
     gl_set_int(program, "tile_columns", tiles->columns);
     gl_bind(program, "tile_primitives", 16, GL_TEXTURE_2D, tiles->primitives);
-    gl_set_int(program, "tiles_listed", tiles->listed);
+    gl_set_int(program, "list_columns", tiles->list_columns);
+    gl_set_float(program, "list_scale", tiles->list_scale);
 }
