@@ -135,6 +135,8 @@ static void parameters_conditions_and_expressions(void **state)
                  {"abs(-3) + sqrt(16) + floor(2.9) + ceil(2.1) + round(2.5)", 15},
                  {"sin(30) + cos(60)", 1},
                  {"log(exp(2))", 2},
+                 {"(0-1)^65 + (0-1)^66", 0},
+                 {"(0-1.5)^65 / 1.5^65", -1},
                  {".5 + 5e-1 + 1.e0", 2},
                  {"0.1", 0.1},
                  {"123456789012345678901234567890e-29", 1.2345678901234567890}};
@@ -328,6 +330,10 @@ static void failures_while_deriving_name_their_place(void **state)
     expect_end("axiom x(1)\nx(n) -> y(2..n)", 9, SHAPE_ERROR_FORMAT, "t:2:12: the range runs backwards");
     expect_end("axiom x(2)\niterations 2000\nx(n) -> x(n^9)", 9, SHAPE_ERROR_FORMAT,
                "t:3:12: the result is too large");
+    expect_end("axiom x(0)\nx(n) -> m(3 % n)", 9, SHAPE_ERROR_FORMAT, "t:2:13: mod by zero");
+    expect_end("axiom x(-8)\nx(n) -> m(n^0.5)", 9, SHAPE_ERROR_FORMAT, "t:2:12: a broken power");
+    expect_end("axiom x(0)\nx(n) -> m(log(n))", 9, SHAPE_ERROR_FORMAT, "t:2:11: the logarithm");
+    expect_end("axiom x(2e9)\nx(n) -> m(sin(n))", 9, SHAPE_ERROR_FORMAT, "t:2:11: an angle beyond");
 }
 
 /* --- mistakes --- */
@@ -410,6 +416,9 @@ static void mistakes_in_rules(void **state)
     EXPECT("axiom F(1,2,3)G(1,2)+(1,2)|(1)[(1)]", {1, 7, "takes two"}, {1, 15, "it takes one"},
            {1, 21, "it takes one"}, {1, 27, "no argument"}, {1, 31, "no argument"});
     EXPECT("axiom X : 1", {1, 9, "behind the axiom"});
+    EXPECT("axiom X\nX -> F)", {2, 7, "')' without '('"});
+    EXPECT("axiom X(1)\nX(1) -> F", {2, 3, "where a parameter's name should stand"});
+    EXPECT("axiom X(1)\nX(a b) -> F", {2, 5, "write ',' or ')'"});
 }
 
 static void mistakes_in_expressions(void **state)
@@ -428,6 +437,7 @@ static void mistakes_in_expressions(void **state)
            {1, 28, "runs backwards (write 1..3)"});
     EXPECT("axiom X(1)\nX(n) : n = 1 -> F\nX(n) : 1 < n < 3 -> F\nX(n) : n & 1 -> F | F", {2, 10, "write =="},
            {3, 14, "a second comparison"}, {4, 10, "write &&"});
+    EXPECT("axiom X(1)\nX(n) : n | 1 -> F", {2, 10, "write ||"});
     EXPECT("axiom X(1)\nX(n) : n > -> F", {2, 12, "where a number should stand"});
 }
 

@@ -391,6 +391,23 @@ static void settings_are_checked(void **state)
     shape_layer_options options = shape_layer_options_defaults();
     options.extent[1] = 0;
     assert_int_equal(shape_layer_options_check(&options, &error), SHAPE_ERROR_ARGUMENT);
+    struct {
+        double base, planet, extinction;
+        const char *part;
+    } wrong[] = {{2e8, 0, 1, "base is 2e+08"},
+                 {NAN, 0, 1, "base is nan"},
+                 {0, -1, 1, "planet-radius is -1"},
+                 {-2000, 1000, 1, "above the planet's centre"},
+                 {0, 0, -1, "extinction is -1"}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        options = shape_layer_options_defaults();
+        options.base = wrong[i].base;
+        options.planet_radius = wrong[i].planet;
+        options.extinction = wrong[i].extinction;
+        assert_int_equal(shape_layer_options_check(&options, &error), SHAPE_ERROR_ARGUMENT);
+        if (!strstr(error.text, wrong[i].part))
+            fail_msg("\"%s\" does not say \"%s\"", error.text, wrong[i].part);
+    }
 }
 
 int main(void)

@@ -8,12 +8,14 @@
 #include "shape/prune.h"
 #include "shape/refine.h"
 
+/* NOLINTBEGIN(bugprone-macro-parentheses): these are initialisers and parts of names. */
 #define MARCH(by, count, lit, depth, grid)                                                                   \
     .method = CHART_MARCH, .rule = SHAPE_RULE_##by, .steps = count, .light = SHAPE_MARCH_##lit,              \
     .shadow = SHAPE_SHADOW_##depth, .cells = grid, .samples = 1
 #define PAPER(which, grid) .method = CHART_##which, .cells = grid, .samples = 1
 #define GL(which, grid, count) .method = CHART_##which, .cells = grid, .samples = count, .voxels = 12000
 #define QUICK .quick = true
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 /* Of each method, the first is the program's own default. */
 const chart_setting chart_settings[] = {

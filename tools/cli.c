@@ -261,7 +261,7 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
     common->arguments = calloc((size_t)common->argument_count + 1, sizeof *common->arguments);
     if (!common->arguments)
         cli_fail("not enough memory");
-    for (int i = 0; i < common->argument_count; i++) {
+    for (int i = 0; rest && i < common->argument_count; i++) {
         common->arguments[i] = strdup(rest[i]);
         if (!common->arguments[i])
             cli_fail("not enough memory");

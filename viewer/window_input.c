@@ -52,12 +52,10 @@ static void on_scroll(GLFWwindow *window, double x, double y)
 
 static void on_control_key(window_state *w, int key, bool shift)
 {
-    if (key == GLFW_KEY_Z && shift)
+    if ((key == GLFW_KEY_Z && shift) || key == GLFW_KEY_Y)
         w->redo = true;
     else if (key == GLFW_KEY_Z)
         w->undo = true;
-    else if (key == GLFW_KEY_Y)
-        w->redo = true;
     else if (key == GLFW_KEY_C)
         w->copy = true;
     else if (key == GLFW_KEY_S)
