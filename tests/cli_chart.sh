@@ -99,3 +99,23 @@ if PATH=$dir/empty "$bin/neph-chart" --quick thin.neph -o new 2>err; then
 fi
 grep -q "gnuplot-nox" err || fail "does not say that gnuplot is missing: $(cat err)"
 [ ! -e new ] || fail "without gnuplot, a folder is left behind"
+
+# One setting at a time: 38 frames in seven series, positive, once each; started again, none is measured again.
+"$bin/neph-chart" --appendix --size 16x9 --runs 1 thin.neph -o sheet 2>err || fail "$(cat err)"
+grep -q "38 frames measured" err || fail "--appendix measured something else: $(cat err)"
+[ "$(head -c 4 sheet/series.png | tail -c 3)" = PNG ] || fail "series.png is no PNG"
+grep -q "</svg>" sheet/series.svg || fail "series.svg is no whole SVG"
+awk -F, 'NR > 1 && !(NF == 6 && $4 > 0) { print; bad = 1 } END { exit bad || NR != 39 }' sheet/series.csv ||
+    fail "rows of series.csv are not what they should be"
+[ "$(tail -n +2 sheet/series.csv | cut -d , -f 1 | uniq | paste -sd ' ')" = \
+    "lattice rule powder steps resolution coverage distance" ] || fail "series.csv lacks a series"
+# 32 times the steps take longer, however busy the machine is.
+awk -F, '$1 == "steps" && $2 == 16 { few = $4 } $1 == "steps" && $2 == 512 { many = $4 } END { exit !(many > 2 * few) }' \
+    sheet/series.csv || fail "512 steps take no longer than 16: $(grep ^steps sheet/series.csv)"
+cp sheet/series.csv before.csv
+"$bin/neph-chart" --appendix --size 16x9 --runs 1 thin.neph -o sheet 2>err || fail "$(cat err)"
+grep -q ": 0 frames measured" err || fail "--appendix measured something twice: $(cat err)"
+cmp -s before.csv sheet/series.csv || fail "series.csv changed although nothing was to do"
+refused 2 "--appendix takes one scene" "$bin/neph-chart" --appendix --quick thin.neph -o new
+echo "a,b" >sheet/series.csv
+refused 1 "is not what this program wrote" "$bin/neph-chart" --appendix --size 16x9 thin.neph -o sheet

@@ -55,6 +55,8 @@ enum { CHART_TEXT = 128, CHART_DIGEST = 16, CHART_RUNS = 99 };
 
 const char *chart_method_name(chart_method method);
 bool chart_method_is_gl(chart_method method);
+/* Whether a setting of the table is its method as the program has it. */
+bool chart_setting_is_default(const chart_setting *setting);
 /* Everything that sets it apart, without commas. */
 void chart_setting_text(const chart_setting *setting, char text[CHART_TEXT]);
 /* For the picture: what is not as usual. */

@@ -61,8 +61,7 @@ void chart_rows_make(const chart_plan *plan, chart_scene *scene)
     for (int pass = 0; pass < 2; pass++)
         for (size_t i = 0; i < chart_setting_count; i++) {
             const chart_setting *setting = &chart_settings[i];
-            bool first = i == 0 || setting->method != setting[-1].method;
-            if (first == (pass == 0) && (!plan->quick || setting->quick) &&
+            if (chart_setting_is_default(setting) == (pass == 0) && (!plan->quick || setting->quick) &&
                 makes_a_difference(scene, setting))
                 add_row(scene, setting);
         }

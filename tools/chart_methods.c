@@ -131,6 +131,11 @@ bool chart_method_is_gl(chart_method method)
     return method >= CHART_GL;
 }
 
+bool chart_setting_is_default(const chart_setting *setting)
+{
+    return setting == chart_settings || setting->method != setting[-1].method;
+}
+
 /* Appends to a text of CHART_TEXT bytes, after a blank. */
 static void SHAPE_PRINTF(2, 3) add(char *text, const char *format, ...)
 {

@@ -312,7 +312,9 @@ static void print_panel(FILE *file, const sheet *s, const series *one)
 static void print_script(FILE *file, const void *context, const char *terminal)
 {
     const sheet *s = context;
-    fprintf(file, "set encoding utf8\nset terminal %s noenhanced font \"sans,10\" size 1200,1000\n",
+    fprintf(file,
+            "set encoding utf8\nset terminal %s noenhanced background rgb \"white\" font \"sans,10\" size "
+            "1200,1000\n",
             terminal);
     fprintf(file, "set ylabel \"milliseconds a frame\"\nset grid ytics back lt 1 lc rgb \"#dddddd\"\n");
     fprintf(file, "set multiplot layout 3,3 title \"%s, %dx%d\"\n", s->scene->name, s->scene->view.width,

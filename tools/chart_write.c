@@ -16,7 +16,7 @@
 
 extern char **environ;
 
-enum { PANEL_WIDTH = 620, PANEL_HEIGHT = 470, BYTES_MOST = 1 << 28 };
+enum { PANEL_WIDTH = 620, PANEL_HEIGHT = 540, BYTES_MOST = 1 << 28 };
 
 static const char *const colours[] = {"#4477aa", "#cc3311", "#ee99aa", "#228833",
                                       "#99cc66", "#aa3377", "#ddaacc"};
@@ -100,6 +100,22 @@ static size_t sort_front(const chart_scene *scene, chart_kind kind, double (*fro
     return count;
 }
 
+/* Methods as they are: the viewer's and the march's, and those of 2018. */
+static void print_defaults(FILE *file, const chart_scene *scene, chart_kind kind, const char *name,
+                           bool of_2018)
+{
+    fprintf(file, "$%s << EOD\n", name);
+    for (size_t i = 0; i < scene->row_count; i++) {
+        const chart_row *row = &scene->rows[i];
+        chart_method m = row->setting->method;
+        bool paper = m != CHART_MARCH && m != CHART_GL && m != CHART_GL_EXACT;
+        if (chart_setting_is_default(row->setting) && in_panel(row, kind) && paper == of_2018 &&
+            m != CHART_GL_EXACT)
+            fprintf(file, "%.6g %.6g\n", chart_median(row, kind), percent(row));
+    }
+    fprintf(file, "EOD\n");
+}
+
 /* Data blocks: $m0 ... by method, $front, and $label for those of the front that have room for a name. */
 static void print_data(FILE *file, const chart_scene *scene, chart_kind kind)
 {
@@ -110,7 +126,7 @@ static void print_data(FILE *file, const chart_scene *scene, chart_kind kind)
                 fprintf(file, "%.6g %.6g\n", chart_median(&scene->rows[i], kind), percent(&scene->rows[i]));
         fprintf(file, "EOD\n");
     }
-    double(*front)[3] = calloc(scene->row_count + 1, sizeof *front), last = INFINITY;
+    double(*front)[3] = calloc(scene->row_count + 1, sizeof *front), last = 0;
     if (!front)
         cli_fail("not enough memory");
     size_t count = sort_front(scene, kind, front);
@@ -118,9 +134,10 @@ static void print_data(FILE *file, const chart_scene *scene, chart_kind kind)
     for (size_t i = 0; i < count; i++)
         fprintf(file, "%.6g %.6g\n", front[i][0], front[i][1]);
     fprintf(file, "EOD\n$label << EOD\n");
-    for (size_t i = 0; i < count; i++) {
+    /* From the most accurate on; names stand left of their points, a line's height apart. */
+    for (size_t i = count; i-- > 0;) {
         char label[CHART_TEXT];
-        if (front[i][1] > last * 0.93)
+        if (front[i][1] < last * 1.16)
             continue;
         last = front[i][1];
         chart_setting_label(scene->rows[(size_t)front[i][2]].setting, label);
@@ -143,19 +160,20 @@ static void print_ranges(FILE *file, const chart_scene *scene, chart_kind kind)
     }
     if (!(t0 <= t1))
         t0 = t1 = e0 = e1 = 1;
-    fprintf(file, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", t0 / pow(fmax(t1 / t0, 10), 0.7),
+    fprintf(file, "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n", t0 / pow(fmax(t1 / t0, 10), 0.85),
             t1 * 1.4, e0 / 1.3, e1 * 1.3);
 }
 
 static void print_panel(FILE *file, const chart_scene *scene, chart_kind kind)
 {
-    static const char *const what[] = {"a picture: light, baking and drawing",
-                                       "a frame: drawing, with light and baking done before"};
+    static const char *const what[] = {"a picture: light, baking, drawing", "a frame: drawing alone"};
     bool any[CHART_METHODS] = {false}, some = false;
     for (size_t i = 0; i < scene->row_count; i++)
         if (in_panel(&scene->rows[i], kind))
             any[scene->rows[i].setting->method] = some = true;
     print_data(file, scene, kind);
+    print_defaults(file, scene, kind, "default", false);
+    print_defaults(file, scene, kind, "paper", true);
     print_ranges(file, scene, kind);
     fprintf(file, "set title \"%s, %dx%d - %s\"\n", scene->name, scene->view.width, scene->view.height,
             what[kind]);
@@ -168,14 +186,18 @@ static void print_panel(FILE *file, const chart_scene *scene, chart_kind kind)
         if (any[i])
             fprintf(file, ", $m%d using 1:2 with points lc rgb \"%s\" pt %d ps 0.9 title \"%s\"", i,
                     colours[i], points[i], chart_method_name((chart_method)i));
-    fprintf(file, ", $label using 1:2:3 with labels right offset -0.8,-0.35 font \",8\" notitle\n");
+    fprintf(file, ", $default using 1:2 with points lc rgb \"#000000\" lw 2 pt 6 ps 2.4 title \"defaults\"");
+    fprintf(file, ", $paper using 1:2 with points lc rgb \"#cc3311\" lw 2 pt 4 ps 2.4 title \"of 2018\"");
+    fprintf(file, ", $label using 1:2:3 with labels right offset -0.8,-0.35 font \",10\" notitle\n");
 }
 
 static void print_script(FILE *file, const void *context, const char *terminal)
 {
     const chart_plan *plan = context;
-    fprintf(file, "set encoding utf8\nset terminal %s noenhanced font \"sans,10\" size %d,%d\n", terminal,
-            2 * PANEL_WIDTH, (int)plan->scene_count * PANEL_HEIGHT);
+    fprintf(file,
+            "set encoding utf8\nset terminal %s noenhanced background rgb \"white\" font \"sans,12\" size "
+            "%d,%d\n",
+            terminal, 2 * PANEL_WIDTH, (int)plan->scene_count * PANEL_HEIGHT);
     fprintf(file, "set logscale xy\nset xlabel \"milliseconds\" offset 0,0.6\nset ylabel \"error, percent\"\n"
                   "set grid xtics ytics back lt 1 lc rgb \"#dddddd\"\nset key below samplen 1.5\n"
                   "set ytics (0.1, 0.2, 0.5, 1, 2, 3, 5, 10, 20, 30, 50, 100, 200)\n");

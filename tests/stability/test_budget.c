@@ -110,7 +110,7 @@ static void test_what_is_not_seen_costs_nothing(void **state)
     shape_march_work alone = draw(&one, &view, &plain);
     assert_int_equal(work.cells, alone.cells);
     assert_int_equal(work.looks, alone.looks);
-    assert_true(alone.looks > 1000);
+    assert_true(alone.looks > 100);
     /* Without the choice they do cost. */
     assert_true(draw(&all, &view, &plain).cells > 4 * alone.cells);
     shape_budget_free(&choice);

@@ -22,10 +22,10 @@ extern "C" {
 enum { SHAPE_LIGHTGRID_VALUES = 8 };
 
 typedef struct shape_lightgrid {
-    int size[3];    /* cells along x, y, z; cell centres lie half a cell inside the box */
-    shape_box box;  /* cloud's frame */
-    float *cells;   /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
-    float *albedos; /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
+    int size[3];     /* cells along x, y, z; cell centres lie half a cell inside the box */
+    shape_box box;   /* cloud's frame */
+    float *cells;    /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
+    float *albedos;  /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
     uint64_t visits; /* what it took: cells times rounds of the solution for scattered light */
 } shape_lightgrid;
 
