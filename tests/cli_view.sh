@@ -87,14 +87,14 @@ awk -F, -v json="$(sed -n 's/.*"\(largest_jump\|clouds_lit\)": *\([0-9.e+-]*\).*
 "$bin/neph-view" spiral.neph -q --bench 3 --size 32x18 --light-grid 8 -o last.png >bench.json || fail "--bench failed"
 [ -s last.png ] || fail "--bench with -o wrote no last frame"
 for key in method size frames load_ms light_ms bake_ms first_picture_ms frame_ms min median p95 primitives \
-    steps_per_pixel fetches_per_pixel; do
+    steps_per_pixel fetches_per_pixel cpu_ms memory_bytes light_bytes baked_bytes; do
     grep -q "\"$key\":" bench.json || fail "the bench's JSON lacks $key"
 done
 grep -q '"frames": 3' bench.json && grep -q '"primitives": 128' bench.json || fail "the bench miscounts: $(cat bench.json)"
 [ "$(tr -d ' \n' <bench.json | sed 's/.*"size":\[\([^]]*\)\].*/\1/')" = 32,18 ] || fail "the bench's size is wrong"
 number() { sed -n "s/.*\"$1\": *\([0-9.e+-]*\).*/\1/p" bench.json; }
 awk "BEGIN { exit !($(number min) > 0 && $(number min) <= $(number median) && $(number median) <= $(number p95) && \
-    $(number steps_per_pixel) > 0 && $(number first_picture_ms) >= $(number light_ms)) }" ||
+    $(number steps_per_pixel) > 0 && $(number memory_bytes) > 1000000 && $(number cpu_ms) > 0 && $(number baked_bytes) > 0 && $(number first_picture_ms) >= $(number light_ms)) }" ||
     fail "the bench's numbers do not agree: $(cat bench.json)"
 
 # --- mistakes: exit code, one line, no output

@@ -266,6 +266,62 @@ static void only_what_changes_is_made_again(void **state)
     shape_set_destroy(set);
 }
 
+/* Ten clouds before the eye, and 990 behind it and beside it, out of its sight and not between it and the sun: what is made,
+ * sent and marched is what the ten alone take, and the picture is the same, in the first frame and after refinement. */
+static void clouds_out_of_sight_cost_nothing(void **state)
+{
+    (void)state;
+    enum { TEN = 10, THOUSAND = 1000, VALUES = 64 * 36 * 4 };
+    shape_error error;
+    shape_gl_costs costs[2][2];
+    float *pictures[2] = {malloc(VALUES * sizeof(float)), malloc(VALUES * sizeof(float))};
+    assert_true(pictures[0] && pictures[1]);
+    for (int k = 0; k < 2; k++) {
+        shape_set *set = new_set();
+        for (int i = 0; i < (k ? THOUSAND : TEN); i++) {
+            shape_cloud *cloud = new_cloud(set, SHAPE_MODEL_SPHEROID);
+            cloud->frame.m[0][3] = i < TEN ? 3 * (i % 5) - 6 : 3 * (i % 50) - 75;
+            cloud->frame.m[1][3] = i < TEN ? 2 * (i / 5) - 1 : 0;
+            cloud->frame.m[2][3] = i < TEN ? -40 : 20 + 3 * (i / 50);
+            add_sphere(set, (size_t)i, 0, 0, 0, 1.2);
+            add_sphere(set, (size_t)i, 0.5, 0.8, 0, 0.7);
+        }
+        shape_volume *volume = new_volume(set);
+        shape_light light = shape_light_defaults();
+        light.sun = shape_sun_direction(90, 40);
+        shape_gl_options options = shape_gl_defaults();
+        options.light.resolution = 16;
+        options.background = true;
+        shape_gl_renderer *renderer;
+        must(shape_gl_create(&options, &renderer, &error), &error);
+        must(shape_gl_load(renderer, volume, &error), &error);
+        must(shape_gl_light(renderer, &light, &error), &error);
+        shape_view view = view_of(64, 36, shape_dvec3_make(0, 0, 0), shape_dvec3_make(0, 0, -40), 30);
+        must(shape_gl_draw_moving(renderer, &view, &error), &error);
+        costs[k][0] = shape_gl_get_costs(renderer);
+        draw_until_done(renderer, &view);
+        must(shape_gl_draw(renderer, &view, 0, &error), &error);
+        must(shape_gl_read(renderer, pictures[k], &error), &error);
+        costs[k][1] = shape_gl_get_costs(renderer);
+        shape_gl_destroy(renderer);
+        shape_volume_destroy(volume);
+        shape_set_destroy(set);
+    }
+    assert_int_equal(costs[0][0].light_bytes, costs[1][0].light_bytes);
+    assert_int_equal(costs[0][0].lit_clouds, TEN);
+    for (int when = 0; when < 2; when++) {
+        assert_int_equal(costs[0][when].lit_clouds, costs[1][when].lit_clouds);
+        assert_int_equal(costs[0][when].baked_clouds, costs[1][when].baked_clouds);
+        assert_int_equal(costs[0][when].baked_bytes, costs[1][when].baked_bytes);
+    }
+    assert_true(costs[0][1].baked_bytes > 0 && costs[0][1].steps_per_pixel > 0);
+    assert_float_equal(costs[0][1].steps_per_pixel, costs[1][1].steps_per_pixel, 0);
+    assert_float_equal(costs[0][1].fetches_per_pixel, costs[1][1].fetches_per_pixel, 0);
+    assert_memory_equal(pictures[0], pictures[1], VALUES * sizeof(float));
+    free(pictures[0]);
+    free(pictures[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -275,6 +331,7 @@ int main(void)
         cmocka_unit_test(a_moving_view_is_near_the_still_one),
         cmocka_unit_test(what_is_made_meanwhile_is_the_same),
         cmocka_unit_test(only_what_changes_is_made_again),
+        cmocka_unit_test(clouds_out_of_sight_cost_nothing),
     };
     return cmocka_run_group_tests(tests, open_context, close_pictures);
 }
