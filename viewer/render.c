@@ -488,6 +488,14 @@ float *view_renderer_take_radiance(view_renderer *r, uint64_t content)
     return taken;
 }
 
+static void tell_lost(view_renderer *r)
+{
+    pthread_mutex_lock(&r->mutex);
+    r->picture.lost = true;
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+}
+
 static void *render_thread(void *context)
 {
     view_renderer *r = context;
@@ -540,6 +548,10 @@ static void *render_thread(void *context)
         if (!broken && !is_idle(r) && step(r, &error)) {
             tell(r, error.text, true);
             broken = true; /* until the next wish */
+        }
+        if (shape_gl_is_lost()) {
+            tell_lost(r);
+            break;
         }
     }
     free(wish);

@@ -39,7 +39,9 @@ typedef struct window_state {
     double read_ms, last, said_until;
     bool open, help, playing, undo, redo, home, shoot, copy, save, escape;
     double longest;  /* time between two looks at the events [ms], but for waiting */
+    double swap_ms;  /* of the last frame: waiting for the screen */
     uint64_t frames; /* drawn */
+    bool panel_started;
     size_t primitives;
     view_reference *reference; /* NULL until the difference is wanted */
     view_difference difference;

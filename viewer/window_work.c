@@ -42,5 +42,6 @@ bool window_break_off(window_state *w)
     }
     snprintf(text, sizeof text, "broken off: %s", what);
     window_say(w, text);
+    cli_say("%s", text);
     return true;
 }
