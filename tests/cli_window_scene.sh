@@ -40,16 +40,17 @@ touch lose-context
 old=$window
 is_new() { grep -q "context was lost" viewer.log && find_window && [ "$window" != "$old" ]; }
 until_true 60 is_new || fail "nothing is said of the lost context: $(cat viewer.log)"
-like $all found shaded
+unlike $all found nearer 0.02 # the primitives are still shaded
+key p
+like $all found nearer
 quit
 grep -q 'frames of the window, the longest took' viewer.log || fail "the frames' times are not said: $(cat viewer.log)"
 
 # --- the scene, and the picture as one
 open a-0001.json a-0001.json
-like $all opened shaded
+unlike $all opened nearer 0.02
 key p
-unlike $all plain shaded 0.02
-like $all plain nearer
+like $all opened nearer
 quit
 "$bin/neph-view" -q a-0001.png --headless -o again.png || fail "a picture of the window is no scene"
 [ "$(compare -metric AE a-0001.png again.png null: 2>&1)" = 0 ] || fail "the picture's scene is another picture"

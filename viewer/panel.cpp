@@ -405,6 +405,8 @@ void draw_judging(const view_panel_input &in)
         ImGui::TextDisabled("the default method looks at voxels: none");
     ImGui::Checkbox("difference from the reference (R)", &s.difference);
     draw_times(in);
+    if (in.chosen[0])
+        ImGui::TextWrapped("--error chose: %s", in.chosen);
 }
 
 void draw_files(view_panel_wish &wish)
@@ -510,8 +512,10 @@ void draw_work(const view_panel_input &in, view_panel_wish &wish, const ImVec2 &
     if (in.work_done < 0)
         share = static_cast<float>(std::fmod(ImGui::GetTime() * 0.5, 1.0));
     ImGui::ProgressBar(share, ImVec2(160, 0), in.work_done < 0 ? "" : nullptr);
-    ImGui::SameLine();
-    wish.cancel = ImGui::Button("cancel (Esc)");
+    if (in.work_ends) {
+        ImGui::SameLine();
+        wish.cancel = ImGui::Button("cancel (Esc)");
+    }
     memory.covered[2] = window_box();
     ImGui::End();
 }

@@ -369,7 +369,7 @@ static bool adopt(view_renderer *r, const view_request *wish, const view_shown *
 static void tell_shot(view_renderer *r, double done)
 {
     pthread_mutex_lock(&r->mutex);
-    r->picture.shot_done = done;
+    r->picture.shot_done = r->cancelled ? -1 : done; /* nobody waits for one that is broken off */
     pthread_mutex_unlock(&r->mutex);
     r->start.wake();
 }
@@ -626,6 +626,8 @@ void view_renderer_cancel(view_renderer *r)
 {
     pthread_mutex_lock(&r->mutex);
     r->cancelled = true;
+    r->shoot = false; /* it may not have begun */
+    r->picture.shot_done = -1;
     pthread_mutex_unlock(&r->mutex);
 }
 

@@ -128,6 +128,7 @@ static void ask_picture(window_state *w)
     request.width = width;
     request.height = height;
     request.number = ++w->asks;
+    w->asked_at = glfwGetTime();
     const view_shown shown = {w->set, w->other_set, w->things};
     view_renderer_ask(w->renderer, &request, &shown);
     memcpy(&w->asked, &w->state, sizeof w->state);
@@ -195,6 +196,8 @@ static void draw(window_state *w)
     const view_panel_input input = {
         .work = work,
         .work_done = work_done,
+        .chosen = w->job->chosen,
+        .work_ends = window_work_ends(w),
         .longest_ms = w->longest,
         .state = &w->state,
         .base = &w->base,
