@@ -17,7 +17,7 @@ libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri libgles2"
 packages_test="
 clang libclang-rt-dev libomp-dev clang-format-14
 libcmocka-dev libopenvdb-tools libnanovdb-tools locales
-xvfb xauth xdotool x11-apps imagemagick python3 parallel
+xvfb xauth xdotool x11-apps x11-utils imagemagick python3 parallel
 bash zsh git groff-base binutils fakeroot dpkg-dev"
 
 # Prints its arguments as one line on standard error, after the script's name, and ends the script.

@@ -109,8 +109,7 @@ unlike $cloud boxes first 0.005
 key b
 key t
 unlike $cloud heat first 0.1
-key t
-key t
+key t t t t
 like $cloud cold first
 
 # --- a screenshot, and the same picture by the commands that it holds

@@ -65,6 +65,8 @@ EXCEPTIONS = {
     "neph-render smoke.vdb --colour-grid": "the same",
     "sh examples/frames/parallel.sh": "draws 250 frames; cli_spread.sh runs it",
     "sbatch ": "needs Slurm; tests/slurm.sh",
+    "neph-view castellanus-0001.png": "of a picture made in the window; cli_window_scene.sh",
+    "neph-render castellanus-0001.png": "the same",
     "identify ": "of a picture made in the window; cli_window.sh",
     "neph-chart --size 320x180": "a quarter of an hour; cli_chart.sh runs neph-chart",
 }

@@ -22,7 +22,7 @@ fail()
     exit 1
 }
 
-for tool in Xvfb xdotool import compare convert identify; do
+for tool in Xvfb xdotool xprop import compare convert identify; do
     command -v $tool >/dev/null || fail "$tool is missing (tests/run.sh installs what the tests need)"
 done
 

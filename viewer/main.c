@@ -36,8 +36,8 @@ static const cli_option view_options[] = {
     {"light-grid", 0, CLI_INTEGER, &light_grid, 2, 256, "N",
      "cells along the longest side of a cloud's light grid [48; paper: 40]", &light_grid_given, true},
     {"error", 0, CLI_NUMBER, &allowed_error, 1e-4, 1, "E",
-     "--headless: as fine as needed for the picture to change by no more than E when drawn twice as fine "
-     "[off]",
+     "as fine as needed for the picture to change by no more than E when drawn twice as fine; a window "
+     "begins so [off]",
      &error_given, true},
     {"make", 0, CLI_CHOICE, &maker, 0, 0, "gauss|meta|layer",
      "no IN: what neph-gauss, neph-meta or neph-layer makes, whose options are in the panel [IN]", NULL,
@@ -143,6 +143,15 @@ static void write_picture(const view_job *job, const shape_view *view, shape_gl_
     free(bytes);
 }
 
+static void describe_choice(const view_quality *chosen, double change, char *text, size_t room)
+{
+    snprintf(text, room,
+             "light grid of %d cells, %.3g million voxels at most, %d samples a pixel: %.4f from the picture "
+             "half as fine%s",
+             chosen->light_cells, (double)chosen->voxels * 1e-6, chosen->samples, change,
+             change > allowed_error ? " (more than --error; there is no finer one)" : "");
+}
+
 /* A picture to --error, and what was chosen for it. */
 static void draw_within(const view_job *job, const shape_view *view, const shape_light *light,
                         const cli_common *common)
@@ -152,13 +161,37 @@ static void draw_within(const view_job *job, const shape_view *view, const shape
     view_quality chosen;
     double change;
     cli_check(view_draw_within(job, view, light, allowed_error, &renderer, &chosen, &change, &error), &error);
-    cli_say("light grid of %d cells, %.3g million voxels at most, %d samples a pixel: %.4f from the picture "
-            "half as "
-            "fine%s",
-            chosen.light_cells, (double)chosen.voxels * 1e-6, chosen.samples, change,
-            change > allowed_error ? " (more than --error; there is no finer one)" : "");
+    char text[192];
+    describe_choice(&chosen, change, text, sizeof text);
+    cli_say("%s", text);
     write_picture(job, view, renderer, common);
     shape_gl_destroy(renderer);
+}
+
+/* A window to --error begins with what its first view needs, found before it is opened. */
+static void choose_for_window(view_job *job)
+{
+    shape_error error;
+    shape_gl_context *context;
+    shape_gl_renderer *renderer;
+    view_quality chosen;
+    double change;
+    shape_view view = job->view;
+    shape_light light = job->light;
+    view_course_view(&job->course, job->time, &view);
+    view_course_light(&job->course, job->time, &light);
+    cli_check(view_job_place(job, job->time, &error), &error);
+    cli_check(shape_gl_context_create(&context, &error), &error);
+    cli_check(view_draw_within(job, &view, &light, allowed_error, &renderer, &chosen, &change, &error),
+              &error);
+    shape_gl_destroy(renderer);
+    shape_gl_context_destroy(context);
+    view_job_free(job);
+    job->options.bake_voxels = chosen.voxels;
+    job->options.light.resolution = job->state->light_grid = chosen.light_cells;
+    job->samples = job->state->samples = chosen.samples;
+    describe_choice(&chosen, change, job->chosen, sizeof job->chosen);
+    cli_say("%s", job->chosen);
 }
 
 static void draw_headless(view_job *job, double started, const cli_common *common)
@@ -227,8 +260,8 @@ static void check_command(const cli_common *common, view_frames *frames)
         cli_wrong("\"%s\": --make takes no file", common->arguments[0]);
     if (!headless && !bench_given && !frames_given && common->output_given)
         cli_wrong("-o needs --headless, --frames or --bench (a window writes no picture)");
-    if (error_given && (!headless || bench_given || frames_given))
-        cli_wrong("--error needs --headless, and no --bench or --frames");
+    if (error_given && (bench_given || frames_given))
+        cli_wrong("--error is for a picture or a window (leave --bench and --frames out)");
     if (error_given && (samples_given || light_grid_given || method >= SHAPE_GL_PAPER))
         cli_wrong("--error chooses samples and light grid itself, for the methods default and exact");
     if (alpha && !headless && !frames_given)
@@ -493,6 +526,8 @@ int main(int argc, char **argv)
         job.load_ms = view_now_ms() - started;
         draw_headless(&job, started, &common);
     } else {
+        if (error_given)
+            choose_for_window(&job);
         cli_check(view_window(&job, save_scene, &error), &error);
     }
     view_job_free(&job);

@@ -27,7 +27,12 @@ struct panel_memory {
 };
 panel_memory memory;
 
-constexpr float width = 310;
+constexpr float plain_width = 310; // of the panel, where a letter is as wide as it is by itself
+
+float panel_width()
+{
+    return plain_width * ImGui::GetIO().FontGlobalScale;
+}
 
 // --- one value ---
 
@@ -351,7 +356,7 @@ void draw_times(const view_panel_input &in)
     static const char *const names[VIEW_PASSES] = {"set", "light", "bake", "draw"};
     static const ImU32 colours[VIEW_PASSES] = {IM_COL32(190, 120, 220, 255), IM_COL32(250, 190, 70, 255),
                                                IM_COL32(90, 200, 150, 255), IM_COL32(90, 150, 250, 255)};
-    constexpr float wide = width - 30, high = 60;
+    const float wide = panel_width() - 30, high = 60;
     ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList *list = ImGui::GetWindowDrawList();
     float most = 1;
@@ -400,6 +405,8 @@ void draw_judging(const view_panel_input &in)
         ImGui::TextDisabled("the default method looks at voxels: none");
     ImGui::Checkbox("difference from the reference (R)", &s.difference);
     draw_times(in);
+    if (in.chosen[0])
+        ImGui::TextWrapped("--error chose: %s", in.chosen);
 }
 
 void draw_files(view_panel_wish &wish)
@@ -428,12 +435,14 @@ void draw_files(view_panel_wish &wish)
 
 void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 &screen)
 {
+    const float width = panel_width();
     ImGui::SetNextWindowPos(ImVec2(8, 8), ImGuiCond_Always);
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 40), ImVec2(width, screen.y - 40));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 40),
+                                        ImVec2(width, screen.y - 40 * ImGui::GetIO().FontGlobalScale));
     ImGui::Begin("neph-view (Tab)", nullptr,
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoCollapse);
-    ImGui::PushItemWidth(width - 140);
+    ImGui::PushItemWidth(width * 170 / plain_width);
     ImGui::PushAllowKeyboardFocus(false); // Tab folds the panel, and must not enter a number on the way
     wish.undo = ImGui::SmallButton("undo");
     ImGui::SameLine();
@@ -468,7 +477,7 @@ void draw_help(const ImVec2 &screen)
         {"T", "heat: steps, fetches, candidates, depth"},
         {"R", "difference from the reference: red brighter, blue darker"},
         {"Space", "time runs, stops"},
-        {"Ctrl+Z", "undo; Ctrl+Shift+Z: redo"},
+        {"Ctrl+Z, Ctrl+Y", "undo, redo (or Ctrl+Shift+Z)"},
         {"Ctrl+C", "copy the commands that make what is seen"},
         {"Ctrl+S", "save a scene, into this folder"},
         {"F12", "screenshot, into this folder"},
@@ -481,7 +490,7 @@ void draw_help(const ImVec2 &screen)
                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse);
     for (const auto &row : rows) {
         ImGui::TextColored(ImVec4(1, 0.85f, 0.5f, 1), "%-13s", row[0]);
-        ImGui::SameLine(110);
+        ImGui::SameLine(110 * ImGui::GetIO().FontGlobalScale);
         ImGui::TextUnformatted(row[1]);
     }
     memory.covered[1] = window_box();
@@ -503,8 +512,10 @@ void draw_work(const view_panel_input &in, view_panel_wish &wish, const ImVec2 &
     if (in.work_done < 0)
         share = static_cast<float>(std::fmod(ImGui::GetTime() * 0.5, 1.0));
     ImGui::ProgressBar(share, ImVec2(160, 0), in.work_done < 0 ? "" : nullptr);
-    ImGui::SameLine();
-    wish.cancel = ImGui::Button("cancel (Esc)");
+    if (in.work_ends) {
+        ImGui::SameLine();
+        wish.cancel = ImGui::Button("cancel (Esc)");
+    }
     memory.covered[2] = window_box();
     ImGui::End();
 }
@@ -525,7 +536,8 @@ void draw_notes(const view_panel_input &in, const ImVec2 &screen)
     char status[256];
     float y = screen.y - 6;
     // Beside the panel where there is room, so that they hide none of it.
-    float left = in.open && screen.x >= 2 * width ? width + 16 : 6, most = screen.x - left - 18;
+    float left = in.open && screen.x >= 2 * panel_width() ? panel_width() + 16 : 6,
+          most = screen.x - left - 18;
     if (in.open) {
         int samples = in.samples < in.state->samples ? in.samples : in.state->samples;
         std::snprintf(status, sizeof status, "%d/%d samples  %.0f ms  %zu primitives  %s", samples,
@@ -652,8 +664,10 @@ void view_panel_start(GLFWwindow *window)
     int pixels = 0, points = 0;
     glfwGetFramebufferSize(window, &pixels, nullptr);
     glfwGetWindowSize(window, &points, nullptr);
-    if (pixels == points && x > 1) // else the window system scales by itself
+    if (pixels == points && x > 1) { // else the window system scales by itself
         ImGui::GetIO().FontGlobalScale = x;
+        ImGui::GetStyle().ScaleAllSizes(x);
+    }
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330 core");
 }

@@ -37,7 +37,9 @@ typedef struct view_panel_input {
     size_t primitives, all_clouds;
     const float (*times)[VIEW_TIMES]; /* VIEW_PASSES of them, of the last pictures [ms], the oldest first */
     const char *work;                 /* what is under way for longer than a moment; NULL: nothing */
+    const char *chosen;               /* what --error chose; empty where it was not given */
     double work_done;                 /* its share that is done; below 0: not known */
+    bool work_ends;                   /* it can be broken off */
     double longest_ms;                /* the longest frame of the window so far */
     bool watched, open, help, playing;
     const shape_set *placed; /* for the wires; NULL */

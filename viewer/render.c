@@ -369,7 +369,7 @@ static bool adopt(view_renderer *r, const view_request *wish, const view_shown *
 static void tell_shot(view_renderer *r, double done)
 {
     pthread_mutex_lock(&r->mutex);
-    r->picture.shot_done = done;
+    r->picture.shot_done = r->cancelled ? -1 : done; /* nobody waits for one that is broken off */
     pthread_mutex_unlock(&r->mutex);
     r->start.wake();
 }
@@ -488,6 +488,14 @@ float *view_renderer_take_radiance(view_renderer *r, uint64_t content)
     return taken;
 }
 
+static void tell_lost(view_renderer *r)
+{
+    pthread_mutex_lock(&r->mutex);
+    r->picture.lost = true;
+    pthread_mutex_unlock(&r->mutex);
+    r->start.wake();
+}
+
 static void *render_thread(void *context)
 {
     view_renderer *r = context;
@@ -540,6 +548,10 @@ static void *render_thread(void *context)
         if (!broken && !is_idle(r) && step(r, &error)) {
             tell(r, error.text, true);
             broken = true; /* until the next wish */
+        }
+        if (shape_gl_is_lost()) {
+            tell_lost(r);
+            break;
         }
     }
     free(wish);
@@ -614,6 +626,8 @@ void view_renderer_cancel(view_renderer *r)
 {
     pthread_mutex_lock(&r->mutex);
     r->cancelled = true;
+    r->shoot = false; /* it may not have begun */
+    r->picture.shot_done = -1;
     pthread_mutex_unlock(&r->mutex);
 }
 

@@ -30,6 +30,7 @@ typedef struct view_picture {
     int width, height;
     int samples;          /* drawn so far, of the state's */
     bool done;            /* nothing is left to do */
+    bool lost;            /* the context is gone, and the renderer with it: it is to be stopped */
     const char *doing;    /* what the thread is at: static text */
     double shot_done;     /* share of a picture file that is done; below 0: none is being made */
     shape_gl_costs costs; /* of the picture's renderer */

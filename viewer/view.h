@@ -32,6 +32,7 @@ typedef struct view_job {
     view_state *state;                     /* what a window begins with, but for the clouds */
     char opening[1024];                    /* options that belong to the file, as they were given */
     char things[4096];                     /* --mesh and --ground, as they were given */
+    char chosen[192];                      /* what --error chose; empty */
     bool scene, alpha;
     bool volume_file; /* a .vdb or raw floats: nothing edits it */
     int samples;      /* of a picture without a window, and of a window at rest */

@@ -128,6 +128,7 @@ static void ask_picture(window_state *w)
     request.width = width;
     request.height = height;
     request.number = ++w->asks;
+    w->asked_at = glfwGetTime();
     const view_shown shown = {w->set, w->other_set, w->things};
     view_renderer_ask(w->renderer, &request, &shown);
     memcpy(&w->asked, &w->state, sizeof w->state);
@@ -195,6 +196,8 @@ static void draw(window_state *w)
     const view_panel_input input = {
         .work = work,
         .work_done = work_done,
+        .chosen = w->job->chosen,
+        .work_ends = window_work_ends(w),
         .longest_ms = w->longest,
         .state = &w->state,
         .base = &w->base,
@@ -233,13 +236,22 @@ static void draw(window_state *w)
     view_panel_wish wish = view_panel_draw(&input);
     settle_camera(w, true);
     obey(w, &wish);
-    glfwSwapBuffers(w->window);
+    double before = now_ms();
+    glfwSwapBuffers(w->window); /* waits for the screen, and for a GPU that has other work */
+    w->swap_ms = now_ms() - before;
 }
 
+/* Either thread may be the first to be told. */
+static bool is_lost(const window_state *w)
+{
+    return w->picture.lost || shape_gl_is_lost();
+}
+
+/* Until it is closed, or its context is lost. */
 static void run(window_state *w)
 {
     w->last = glfwGetTime();
-    for (int left = 3; !glfwWindowShouldClose(w->window);) {
+    for (int left = 3; !glfwWindowShouldClose(w->window) && !is_lost(w);) {
         /* ImGui wants a second frame and a third after an event; then there is nothing to draw until the next. */
         if (left > 0 || w->playing)
             glfwPollEvents();
@@ -267,9 +279,8 @@ static void run(window_state *w)
             view_history_keep(w->history, &w->state);
         w->frames++;
         if (w->frames > FIRST_FRAMES) /* the first ones compile what the driver needs */
-            w->longest = fmax(w->longest, now_ms() - begun);
+            w->longest = fmax(w->longest, now_ms() - begun - w->swap_ms);
     }
-    cli_say("%llu frames of the window, the longest took %.0f ms", (unsigned long long)w->frames, w->longest);
 }
 
 /* --- the beginning and the end --- */
@@ -299,6 +310,7 @@ static GLFWwindow *open_window(int width, int height, const char *title, GLFWwin
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     glfwWindowHint(GLFW_VISIBLE, share ? GLFW_FALSE : GLFW_TRUE);
     return glfwCreateWindow(width, height, title, NULL, share);
 }
@@ -333,7 +345,7 @@ static shape_status start_other(window_state *w, shape_error *error)
     return status;
 }
 
-static shape_status start_threads(window_state *w, GLFWwindow *hidden, shape_error *error)
+static shape_status start_files(window_state *w, shape_error *error)
 {
     const view_job *job = w->job;
     shape_set *copy;
@@ -344,10 +356,6 @@ static shape_status start_threads(window_state *w, GLFWwindow *hidden, shape_err
         status = start_other(w, error);
     if (status)
         return status;
-    const view_render_start start = {job->options, job->morph, make_current, hidden, wake, job->largest};
-    w->renderer = view_renderer_start(&start, error);
-    if (!w->renderer)
-        return error->status;
     /* A morph's pairs are made once, of the file as it was opened; a volume is read once. */
     if (strcmp(job->path, "-") && !job->morph && !job->volume_file) {
         w->watch = view_watch_start(job->path, &job->generator, &job->more, wake, error);
@@ -358,34 +366,100 @@ static shape_status start_threads(window_state *w, GLFWwindow *hidden, shape_err
     return w->history ? SHAPE_OK : shape_error_memory(error);
 }
 
-static shape_status show(window_state *w, shape_error *error)
+static void end_files(window_state *w)
 {
-    GLFWwindow *hidden = open_window(16, 16, "", w->window);
-    if (!hidden)
+    view_watch_stop(w->watch);
+    view_watch_stop(w->other_watch);
+    view_watch_stop(w->opening);
+    view_history_destroy(w->history);
+    view_shared_drop(w->other_set);
+}
+
+/* What is drawn with, and in, from the window to the drawing thread. */
+static shape_status start_drawing(window_state *w, GLFWwindow **hidden, shape_error *error)
+{
+    const view_job *job = w->job;
+    int size[2] = {job->view.width, job->view.height};
+    if (w->asked_size[0] > 0) /* another one in the place of one that was lost */
+        memcpy(size, w->asked_size, sizeof size);
+    w->window = open_window(size[0], size[1], w->title, NULL);
+    if (!w->window)
+        return no_window("no window with OpenGL 3.3", error);
+    *hidden = open_window(16, 16, "", w->window);
+    if (!*hidden)
         return no_window("no second OpenGL context", error);
     glfwMakeContextCurrent(w->window);
     glfwSwapInterval(1);
     window_listen(w);
     view_panel_start(w->window);
-    int width, height;
-    glfwGetWindowSize(w->window, &width, &height);
-    w->open = width >= PANEL_WIDTH;
-    shape_status status = start_threads(w, hidden, error);
-    if (!status)
-        run(w);
-    glfwHideWindow(w->window); /* what is being done may take a moment to end */
-    glfwPollEvents();
-    view_watch_stop(w->watch);
-    view_watch_stop(w->other_watch);
-    view_watch_stop(w->opening);
+    w->panel_started = true;
+    memset(&w->picture, 0, sizeof w->picture);
+    w->picture.doing = "";
+    w->picture.shot_done = -1;
+    w->asked_size[0] = w->asked_size[1] = 0; /* ask anew */
+    const view_render_start start = {job->options, job->morph, make_current, *hidden, wake, job->largest};
+    w->renderer = view_renderer_start(&start, error);
+    return w->renderer ? SHAPE_OK : error->status;
+}
+
+static void end_drawing(window_state *w, GLFWwindow *hidden)
+{
     window_stop_comparing(w);
     view_renderer_stop(w->renderer);
-    view_history_destroy(w->history);
-    view_shared_drop(w->other_set);
     view_shared_drop(w->placed);
-    view_panel_stop();
-    glfwDestroyWindow(hidden);
+    w->renderer = NULL;
+    w->placed = NULL;
+    if (w->panel_started)
+        view_panel_stop();
+    w->panel_started = false;
+    if (hidden)
+        glfwDestroyWindow(hidden);
+    if (w->window)
+        glfwDestroyWindow(w->window);
+    w->window = NULL;
+}
+
+/* One window, to its end. *lost: its context was. */
+static shape_status show(window_state *w, bool *lost, shape_error *error)
+{
+    GLFWwindow *hidden = NULL;
+    shape_status status = start_drawing(w, &hidden, error);
+    int width;
+    if (!status && !w->set) {
+        glfwGetWindowSize(w->window, &width, NULL);
+        w->open = width >= PANEL_WIDTH;
+        status = start_files(w, error);
+    }
+    if (!status)
+        run(w);
+    *lost = !status && !glfwWindowShouldClose(w->window);
+    if (w->window && !*lost) {
+        glfwHideWindow(w->window); /* what is being done may take a moment to end */
+        glfwPollEvents();
+    }
+    int size[2] = {w->asked_size[0], w->asked_size[1]};
+    end_drawing(w, hidden);
+    memcpy(w->asked_size, size, sizeof size);
     return status;
+}
+
+/* A window whose context is lost is replaced by another that shows the same, a few times; a GPU that goes on losing them
+ * cannot be drawn with. */
+static shape_status show_on(window_state *w, shape_error *error)
+{
+    enum { TRIES = 5 };
+    bool lost = false;
+    for (int i = 0; i < TRIES; i++) {
+        shape_status status = show(w, &lost, error);
+        if (status || !lost)
+            return status;
+        cli_say("the OpenGL context was lost (the GPU was reset, or is gone); the window is opened anew");
+        window_say(w, "the OpenGL context was lost; this is another one");
+    }
+    return shape_error_set(error, SHAPE_ERROR_SYSTEM,
+                           "the OpenGL context was lost %d times (LIBGL_ALWAYS_SOFTWARE=1 lets Mesa draw "
+                           "without the GPU)",
+                           TRIES);
 }
 
 shape_status view_window(view_job *job, void (*closed)(const view_job *job), shape_error *error)
@@ -408,10 +482,11 @@ shape_status view_window(view_job *job, void (*closed)(const view_job *job), sha
     begin_state(w);
     w->camera = w->start = view_camera_start(&job->view, min, max);
     snprintf(w->title, sizeof w->title, "%.440s - neph-view [working]", job->title);
-    w->window = open_window(job->view.width, job->view.height, w->title, NULL);
-    shape_status status = w->window ? show(w, error) : no_window("no window with OpenGL 3.3", error);
-    if (w->window)
-        glfwDestroyWindow(w->window);
+    shape_status status = show_on(w, error);
+    end_files(w);
+    if (w->frames)
+        cli_say("%llu frames of the window, the longest took %.0f ms", (unsigned long long)w->frames,
+                w->longest);
     if (!status) {
         view_job last = *job; /* as the window was */
         last.state = &w->state;

@@ -84,5 +84,10 @@ void window_describe_difference(const window_state *w, char *text, size_t room)
 void window_stop_comparing(window_state *w)
 {
     view_reference_stop(w->reference);
-    glDeleteTextures(1, &w->map);
+    w->reference = NULL;
+    w->compared = 0;
+    w->difference.width = 0;
+    if (w->map) /* else there may be no context */
+        glDeleteTextures(1, &w->map);
+    w->map = 0;
 }

@@ -39,7 +39,10 @@ typedef struct window_state {
     double read_ms, last, said_until;
     bool open, help, playing, undo, redo, home, shoot, copy, save, escape;
     double longest;  /* time between two looks at the events [ms], but for waiting */
+    double asked_at; /* when a picture was asked for last [s] */
+    double swap_ms;  /* of the last frame: waiting for the screen */
     uint64_t frames; /* drawn */
+    bool panel_started;
     size_t primitives;
     view_reference *reference; /* NULL until the difference is wanted */
     view_difference difference;
@@ -69,6 +72,8 @@ void window_hear_opening(window_state *w);
 
 /* What is under way, for longer than a moment, and how far it is (below 0: not known); NULL: nothing. */
 const char *window_work(window_state *w, double *done);
+/* Whether that can be broken off. */
+bool window_work_ends(window_state *w);
 /* Breaks it off; false where there is nothing to break off. */
 bool window_break_off(window_state *w);
 

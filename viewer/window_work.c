@@ -6,6 +6,9 @@
 
 enum { MOMENT_MS = 300 }; /* shorter work is not worth a word */
 
+/* It is done before there is any picture of the clouds, and cannot be broken off. */
+static const char light_work[] = "light and density";
+
 static bool takes_long(view_watch *watch)
 {
     return watch && view_watch_busy_for(watch) > MOMENT_MS;
@@ -22,7 +25,17 @@ const char *window_work(window_state *w, double *done)
         return "opening the file";
     if (takes_long(w->watch))
         return "making the cloud anew";
-    return takes_long(w->other_watch) ? "reading the right file" : NULL;
+    if (takes_long(w->other_watch))
+        return "reading the right file";
+    bool late = w->asks && w->picture.request < w->asks && glfwGetTime() - w->asked_at > MOMENT_MS / 1e3;
+    return late && !w->picture.text_is_error ? light_work : NULL;
+}
+
+bool window_work_ends(window_state *w)
+{
+    double done;
+    const char *what = window_work(w, &done);
+    return what && what != light_work;
 }
 
 bool window_break_off(window_state *w)
@@ -30,10 +43,11 @@ bool window_break_off(window_state *w)
     double done;
     const char *what = window_work(w, &done);
     char text[160];
-    if (!what)
+    if (!what || what == light_work)
         return false;
     if (done >= 0) {
         view_renderer_cancel(w->renderer);
+        w->picture.shot_done = -1;
     } else if (takes_long(w->opening)) {
         view_watch_leave(w->opening);
         w->opening = NULL;
@@ -42,5 +56,6 @@ bool window_break_off(window_state *w)
     }
     snprintf(text, sizeof text, "broken off: %s", what);
     window_say(w, text);
+    cli_say("%s", text);
     return true;
 }

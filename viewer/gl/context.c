@@ -64,3 +64,10 @@ void shape_gl_context_destroy(shape_gl_context *context)
     eglTerminate(context->display);
     free(context);
 }
+
+bool shape_gl_is_lost(void)
+{
+    if (epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness"))
+        return glGetGraphicsResetStatus() != GL_NO_ERROR;
+    return epoxy_has_gl_extension("GL_ARB_robustness") && glGetGraphicsResetStatusARB() != GL_NO_ERROR;
+}

@@ -17,6 +17,10 @@ typedef struct shape_gl_context shape_gl_context;
 shape_status shape_gl_context_create(shape_gl_context **context, shape_error *error);
 void shape_gl_context_destroy(shape_gl_context *context); /* NULL is allowed */
 
+/* Whether the driver has lost the current context (a GPU that was reset, or taken away). All that was in it is gone, and
+ * nothing but making another one helps. Always false where the driver cannot tell. */
+bool shape_gl_is_lost(void);
+
 /* --- passes.c: the renderer --- */
 
 typedef enum shape_gl_method {

@@ -33,7 +33,10 @@ shape_status gl_target_make(gl_target *target, int width, int height, bool depth
     }
     glDrawBuffers(2, buffers);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "this GPU cannot draw into 32-bit float textures");
+        return shape_error_set(
+            error, SHAPE_ERROR_SYSTEM,
+            "this GPU cannot draw into 32-bit float textures (neph-render needs no GPU; or "
+            "LIBGL_ALWAYS_SOFTWARE=1 lets Mesa draw without it)");
     return SHAPE_OK;
 }
 
