@@ -247,6 +247,11 @@ void draw_light(const view_panel_input &in)
         s.sky = static_cast<shape_sky_kind>(sky);
     if (s.sky == SHAPE_SKY_CONSTANT)
         ImGui::ColorEdit3("radiance", s.sky_radiance, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+    bool air = s.air.visibility > 0;
+    if (ImGui::Checkbox("air", &air))
+        s.air.visibility = air ? 1000 : 0;
+    if (air)
+        turn_group("Air", in, 0);
 }
 
 // Of a split picture: by which method, and of which file.

@@ -64,6 +64,7 @@ static void begin_state(window_state *w)
     memcpy(s->sun_irradiance, job->light.sun_irradiance, sizeof s->sun_irradiance);
     s->sky = job->light.sky;
     memcpy(s->sky_radiance, job->light.sky_radiance, sizeof s->sky_radiance);
+    s->air = job->light.air;
     memcpy(&s->course, &job->course, sizeof s->course);
     s->time = job->time;
     s->method = (int)job->options.method;

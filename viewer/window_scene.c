@@ -34,6 +34,10 @@ static void take_light(window_state *w, const shape_scene *n)
         w->state.sky = w->base.sky = n->sky;
         take_floats(n->sky_radiance, w->state.sky_radiance, w->base.sky_radiance);
     }
+    if (n->air_given != o->air_given || n->visibility != o->visibility || n->air_height != o->air_height) {
+        const shape_air air = {n->visibility, n->air_height};
+        w->state.air = w->base.air = air;
+    }
 }
 
 void window_take_scene(window_state *w, const shape_scene *n)

@@ -51,7 +51,7 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     static const char whole[] = "view/fullscreen.vert";
     shape_status status = SHAPE_OK;
     if (options->method == SHAPE_GL_DEFAULT)
-        status = gl_preview_create(&made->preview, folder, error);
+        status = gl_preview_create(&made->preview, folder, "", error);
     if (!status)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
@@ -83,6 +83,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     gl_grids_drop(&renderer->last_grids);
     gl_preview_free(&renderer->preview);
     gl_surface_free(&renderer->surface);
+    gl_air_free(&renderer->air);
     glDeleteProgram(renderer->view_program);
     glDeleteProgram(renderer->tonemap);
     glDeleteProgram(renderer->density);
@@ -124,13 +125,14 @@ static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *er
 {
     const shape_volume *volume = renderer->volume;
     bool plain = is_plain(volume), one = volume->cloud_count == 1;
-    int octaves = one ? volume->clouds[0].field.octaves : 0, kind = plain + 2 * octaves;
+    bool air = gl_has_air(renderer);
+    int octaves = one ? volume->clouds[0].field.octaves : 0, kind = plain + 2 * air + 4 * octaves;
     if (renderer->options.method == SHAPE_GL_DEFAULT ||
         (renderer->view_program && renderer->view_kind == kind))
         return SHAPE_OK;
     char defines[100];
-    snprintf(defines, sizeof defines, "%s%s", plain ? "#define FIELD_PLAIN\n" : "",
-             one ? "#define ONE_CLOUD\n" : "");
+    snprintf(defines, sizeof defines, "%s%s%s", plain ? "#define FIELD_PLAIN\n" : "",
+             one ? "#define ONE_CLOUD\n" : "", air ? "#define AIR\n" : "");
     if (one)
         snprintf(defines + strlen(defines), sizeof defines - strlen(defines), "#define OCTAVES %d\n",
                  octaves);
@@ -166,9 +168,21 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     return status;
 }
 
+/* Programs with air, or without. */
+static shape_status change_air(shape_gl_renderer *renderer, shape_error *error)
+{
+    bool air = gl_has_air(renderer);
+    if (air == renderer->with_air)
+        return SHAPE_OK;
+    renderer->with_air = air;
+    if (renderer->options.method != SHAPE_GL_DEFAULT)
+        return prepare_program(renderer, error);
+    return gl_preview_create(&renderer->preview, renderer->options.shader_folder, air ? "#define AIR\n" : "",
+                             error);
+}
+
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
 {
-    (void)error;
     const shape_dvec3 *old = &renderer->light.sun, *sun = &light->sun;
     if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light)
         renderer->light_changed = true;
@@ -176,7 +190,7 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
-    return SHAPE_OK;
+    return change_air(renderer, error);
 }
 
 int shape_gl_largest(void)
@@ -262,6 +276,9 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     gl_set_camera(frame, program);
     gl_set_method(renderer, frame->view, program);
     gl_set_surface(renderer, program);
+    gl_set_air(renderer, program, frame->camera->origin);
+    if (gl_has_air(renderer)) /* it lights the air even where it is not seen */
+        gl_set_int(program, "sky_kind", (int)renderer->sky.kind);
     if (frame->tiles->listed)
         gl_set_float(program, "window_length", 1e30f); /* lists are in order: windows need no limit */
     if (in_parts(renderer))
@@ -308,6 +325,7 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     if (!status) {
         gl_light_place(renderer->grids.light, &renderer->scene, renderer->volume);
         gl_surface_draw(renderer, &frame);
+        status = gl_air_draw(renderer, &frame, error);
     }
     if (!status && moving && renderer->fade_left > 0) {
         status = draw_by(renderer, &renderer->last_grids, &frame, error);
