@@ -107,7 +107,9 @@ static shape_light low_sun(double far)
     return light;
 }
 
-/* The march's picture, of rays at the same places; without air this scene is off by 0.0006. */
+/* The march's picture, of rays at the same places, under a sky of one radiance (the clear one is laid out every eighth pixel,
+ * too coarse for so small a picture). What is left are baked density and the light grid's cells, as without air, and shafts
+ * that are laid out every eighth pixel. */
 static void it_is_what_the_march_makes(void **state)
 {
     (void)state;
@@ -119,6 +121,9 @@ static void it_is_what_the_march_makes(void **state)
     must(shape_opaque_add_ground(opaque, 0, grey, &error), &error);
     must(shape_opaque_finish(opaque, &error), &error);
     shape_light light = low_sun(40);
+    light.sky = SHAPE_SKY_CONSTANT;
+    for (int c = 0; c < 3; c++)
+        light.sky_radiance[c] = 0.3f + 0.2f * (float)c;
     shape_view view = view_of(WIDE, HIGH, shape_dvec3_make(3, 2, 14), shape_dvec3_make(0, 3, 0), 45);
     shape_march_options options = shape_march_defaults();
     shape_marcher *marcher;
@@ -137,7 +142,7 @@ static void it_is_what_the_march_makes(void **state)
                 sum += (a - b) * (a - b) / (b * b + 0.01);
             }
         print_message("method %d: relMSE to the march %.5f\n", method, sum / (3 * WIDE * HIGH));
-        assert_true(sum / (3 * WIDE * HIGH) < 0.003);
+        assert_true(sum / (3 * WIDE * HIGH) < 0.001);
         shape_gl_destroy(renderer);
     }
     shape_marcher_destroy(marcher);
