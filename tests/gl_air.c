@@ -19,8 +19,8 @@ static void add_rectangle(shape_opaque *opaque, const shape_dvec3 corners[4])
 }
 
 /* Draws samples of a volume into rgba; a renderer's light may be set again and again. */
-static void picture(shape_gl_renderer *renderer, const shape_view *view, const shape_light *light, int samples,
-                 float *rgba)
+static void picture(shape_gl_renderer *renderer, const shape_view *view, const shape_light *light,
+                    int samples, float *rgba)
 {
     shape_error error;
     must(shape_gl_light(renderer, light, &error), &error);
@@ -202,10 +202,11 @@ static void parts_join_without_a_seam(void **state)
             picture(renderer, &view, &light, 2, part);
             for (int j = 0; j < p.width * p.height; j++)
                 for (int c = 0; c < 4; c++)
-                    most = fmax(most, fabs((double)part[4 * j + c] -
-                                           (double)whole[4 * ((H - y - p.height + j / p.width) * W + x +
-                                                              j % p.width) +
-                                                         c]));
+                    most = fmax(
+                        most,
+                        fabs(
+                            (double)part[4 * j + c] -
+                            (double)whole[4 * ((H - y - p.height + j / p.width) * W + x + j % p.width) + c]));
         }
     print_message("parts are off by %.2g\n", most);
     assert_true(most < 1e-4);

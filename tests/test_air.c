@@ -113,8 +113,8 @@ static double traced(const sample_scene *scene, const shape_light *light, shape_
     if (shape_tracer_create(scene->volume, &tracer, &error))
         fail_msg("%s", error.text);
     for (int i = 0; i < paths; i++) {
-        shape_pathtrace_radiance(tracer, light, &options, shape_dvec3_make(0, 0, 0), shape_dvec3_make(0, 0, 1),
-                                 &random, rgb);
+        shape_pathtrace_radiance(tracer, light, &options, shape_dvec3_make(0, 0, 0),
+                                 shape_dvec3_make(0, 0, 1), &random, rgb);
         sum += rgb[0];
         squares += rgb[0] * rgb[0];
     }
@@ -280,14 +280,13 @@ static void wrong_air_is_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(depth_and_distance_are_inverse),
-        cmocka_unit_test(air_thins_with_height),
-        cmocka_unit_test(a_black_wall_fades_into_the_sky),
-        cmocka_unit_test(the_sky_stays_as_it_is),
-        cmocka_unit_test(air_in_the_shadow_lacks_the_suns_share),
-        cmocka_unit_test(a_streak_is_as_dark_as_its_shadow_is_long),
-        cmocka_unit_test(air_and_cloud_share_the_way),
-        cmocka_unit_test(wrong_air_is_refused)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(depth_and_distance_are_inverse),
+                                       cmocka_unit_test(air_thins_with_height),
+                                       cmocka_unit_test(a_black_wall_fades_into_the_sky),
+                                       cmocka_unit_test(the_sky_stays_as_it_is),
+                                       cmocka_unit_test(air_in_the_shadow_lacks_the_suns_share),
+                                       cmocka_unit_test(a_streak_is_as_dark_as_its_shadow_is_long),
+                                       cmocka_unit_test(air_and_cloud_share_the_way),
+                                       cmocka_unit_test(wrong_air_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -482,6 +482,11 @@ int main(int argc, char **argv)
         cli_refuse_volume_options();
     if (opened.input.scene)
         cli_picture_use_scene(opened.input.scene);
+    if (method >= SHAPE_GL_PAPER && cli_picture_values.visibility > 0) {
+        if (cli_given("visibility"))
+            cli_wrong("--visibility: the methods of 2018 have no air (choose default or exact)");
+        cli_say("note: the scene's air is not shown by --method %s", method_names[method]);
+    }
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     job.opaque = render_opaque_read(&opened.input);

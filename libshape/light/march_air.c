@@ -14,8 +14,8 @@ void march_air_knot(march_ray *ray, double t)
     shape_march_scratch *s = ray->scratch;
     if (!ray->marcher->has_air || ray->status)
         return;
-    ray->status = shape_array_reserve((void **)&s->air, &s->air_capacity, s->air_count + 1, sizeof *s->air,
-                                      ray->error);
+    ray->status =
+        shape_array_reserve((void **)&s->air, &s->air_capacity, s->air_count + 1, sizeof *s->air, ray->error);
     if (ray->status)
         return;
     s->air[s->air_count][0] = t;

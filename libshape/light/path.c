@@ -222,7 +222,8 @@ static void add_air(const path_scene *s, light_path *path, const double p[3], do
     shape_dvec3 origin = to_world(s, p), d = {path->d[0], path->d[1], path->d[2]};
     shape_air_ray air = shape_air_along(&s->light, &s->sky, s->sky_mean, origin, d);
     double passed = exp(-shape_air_depth(&air, length)), way[3] = {s->sun[0], s->sun[1], s->sun[2]};
-    double lit = isinf(length) ? 0 : 1 - passed, dark = 0; /* what comes from the sky has the air in it already */
+    double lit = isinf(length) ? 0 : 1 - passed,
+           dark = 0; /* what comes from the sky has the air in it already */
     light_path here = *path;
     double t = shape_air_distance(&air, -log1p(-track_unit(path->random) * (1 - passed)));
     for (int i = 0; i < 3; i++)

@@ -28,11 +28,10 @@ static shape_status make_programs(gl_air *air, const char *folder, shape_error *
 {
     shape_status status = SHAPE_OK;
     if (!air->slice)
-        status = gl_program_create(folder, "view/fullscreen.vert", "view/air_slice.frag", "", &air->slice,
-                                   error);
-    if (!status && !air->sum)
         status =
-            gl_program_create(folder, "view/fullscreen.vert", "view/air_sum.frag", "", &air->sum, error);
+            gl_program_create(folder, "view/fullscreen.vert", "view/air_slice.frag", "", &air->slice, error);
+    if (!status && !air->sum)
+        status = gl_program_create(folder, "view/fullscreen.vert", "view/air_sum.frag", "", &air->sum, error);
     return status;
 }
 

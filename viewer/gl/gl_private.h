@@ -245,10 +245,10 @@ typedef struct gl_preview {
 
 /* What the air needs, see air.c. */
 typedef struct gl_air {
-    GLuint slice, sum;     /* programs */
-    GLuint textures[2];    /* the shadow in slices, and its sum */
+    GLuint slice, sum;              /* programs */
+    GLuint textures[2];             /* the shadow in slices, and its sum */
     GLuint framebuffers[2], clouds; /* clouds: records of all clouds, in sight or not */
-    int size[2];           /* of a slice's picture */
+    int size[2];                    /* of a slice's picture */
 } gl_air;
 
 typedef struct gl_refinement gl_refinement;

@@ -92,8 +92,8 @@ static void choose(const gl_order *order, gl_light *light, int *cells)
         const shape_volume_cloud *c = &order->volume->clouds[i];
         gl_lit *last = old ? old->lit[i] : NULL;
         /* Clouds throw their shadows on things and into the air from wherever they are. */
-        bool near = order->paper || order->all_clouds ||
-                    (c->tree->count && gl_in_sight(c, &camera, GL_MARGIN));
+        bool near =
+            order->paper || order->all_clouds || (c->tree->count && gl_in_sight(c, &camera, GL_MARGIN));
         int own = near ? wanted_cells(order, i) : 0;
         bool good = last && near &&
                     (order->missing_only || last->wanted == own ||

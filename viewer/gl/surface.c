@@ -222,7 +222,7 @@ void gl_surface_draw(shape_gl_renderer *r, const gl_frame *frame)
     gl_set_light(r, program);
     gl_set_camera(frame, program);
     gl_shade_set(r, program, s->clouds, eye, NULL); /* without memory: no shadow of clouds on things */
-    gl_set_things(r, program, eye);                 /* after it, which binds textures to whatever unit is active */
+    gl_set_things(r, program, eye); /* after it, which binds textures to whatever unit is active */
     gl_set_vector(program, "ground_colour", s->ground_colour);
     glUniform2f(glGetUniformLocation(program, "ground_middle"), (float)-eye.x, (float)-eye.z);
     gl_set_float(program, "ground_reach", (float)(SHAPE_OPAQUE_GROUND_SIDE / 2));

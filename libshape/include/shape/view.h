@@ -19,8 +19,9 @@ typedef enum shape_sky_kind { SHAPE_SKY_NONE, SHAPE_SKY_CONSTANT, SHAPE_SKY_CLEA
 
 /* The air between the eye and what it sees (shape/air.h). All 0, the default: none. */
 typedef struct shape_air {
-    double visibility; /* how far away a black thing is just told from the sky, at height 0 [m], 0.001 to 1e12; 0: no air */
-    double height;     /* over which the air thins by a factor e [m], 0.001 to 1e12; 0: alike at all heights */
+    double
+        visibility; /* how far away a black thing is just told from the sky, at height 0 [m], 0.001 to 1e12; 0: no air */
+    double height; /* over which the air thins by a factor e [m], 0.001 to 1e12; 0: alike at all heights */
 } shape_air;
 
 typedef struct shape_light {
