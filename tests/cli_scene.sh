@@ -56,6 +56,21 @@ small="--size 32x18"
 "$bin/neph-render" -q gauss.neph $small --spp 4 --sun 100,20.5 --sky 0.1,0.2,0.3 -o a.exr --save-scene in/shown.json 2>err
 "$bin/neph-render" -q in/shown.json --allow-outside --spp 4 -o b.exr
 cmp -s a.exr b.exr || fail "neph-render --save-scene: the scene gives another picture"
+"$bin/neph-render" -q gauss.neph $small --spp 4 --visibility 30 --air-height 12.5 -o air.exr --save-scene in/air.json
+grep -q '"air": {"visibility": 30, "height": 12.5}' in/air.json || fail "--save-scene drops the air"
+"$bin/neph-render" -q in/air.json --allow-outside --spp 4 -o air2.exr
+cmp -s air.exr air2.exr || fail "a scene's air gives another picture"
+"$bin/neph-render" -q gauss.neph $small --spp 4 -o clear.exr
+cmp -s air.exr clear.exr && fail "--visibility changes nothing"
+"$bin/neph-render" -q in/air.json --allow-outside --spp 4 --visibility 0 -o clear2.exr
+cmp -s clear.exr clear2.exr || fail "--visibility 0 does not take a scene's air away"
+"$bin/neph-render" in/air.json --allow-outside --method paper -o paper.png 2>err
+grep -q "does not show the scene's air" err || fail "--method paper drops the air and says nothing"
+wrong "have no air" "$bin/neph-render" gauss.neph --method paper --visibility 30 -o paper.png
+wrong "there is no air" "$bin/neph-render" gauss.neph --air-height 30 -o x.png
+wrong "visibility and height" "$bin/neph-render" gauss.neph --visibility 1e-6 -o x.png
+printf '{"scene": 1, "clouds": [], "air": {"height": 3}}' >in/bad.json
+refused "air: has no visibility" "$bin/neph-render" in/bad.json -o x.png
 "$bin/neph-render" -q in/shown.json --allow-outside --spp 4 --sun 10,60 -o c.exr --save-scene moved.json
 cmp -s a.exr c.exr && fail "--sun does not override the scene's"
 "$bin/neph-render" -q moved.json --spp 4 -o d.exr

@@ -32,6 +32,12 @@ const cli_option cli_picture_options[] = {
      "of the sun on a plane that faces it [pi,pi,pi]", GIVEN(sun_irradiance)},
     {"sky", 0, CLI_TEXT, VALUE(sky), 0, 0, "none|R,G,B|clear",
      "black, one radiance, or a clear day's [clear]", GIVEN(sky)},
+    {"visibility", 0, CLI_NUMBER, VALUE(visibility), 0, 1e12, "METRES",
+     "of the air: how far away a black thing is just told from the sky; 0: there is no air [0]",
+     GIVEN(visibility)},
+    {"air-height", 0, CLI_NUMBER, VALUE(air_height), 0, 1e12, "METRES",
+     "over which the air thins by a factor e, from y = 0 upwards; 0: alike at all heights [0]",
+     GIVEN(air_height)},
     {"exposure", 0, CLI_NUMBER, VALUE(exposure), -32, 32, "STOPS", "of 8-bit pictures, stops [0.5]",
      GIVEN(exposure)},
     {0}};
@@ -65,6 +71,13 @@ static void apply_light(shape_light *light)
     } else {
         cli_wrong("--sky \"%s\": expected none, clear or a radiance R,G,B", v->sky);
     }
+    light->air.visibility = v->visibility;
+    light->air.height = v->air_height;
+    shape_error error;
+    if (v->air_height_given && !(v->visibility > 0))
+        cli_wrong("--air-height: there is no air (give --visibility METRES)");
+    if (shape_light_check(light, &error))
+        cli_wrong("%s", error.text);
 }
 
 void cli_picture_apply(const shape_set *set, shape_view *view, shape_light *light)

@@ -8,13 +8,14 @@
 typedef struct cli_picture {
     int64_t size[2];
     double eye[3], target[3], fov, sun[2], sun_irradiance[3], exposure;
+    double visibility, air_height;
     const char *sky;
     double sun_angle, lamp[3], lamp_intensity[3]; /* options of neph-render alone, and of scenes */
     shape_day day; /* of scenes: where the sun stands, and what the air leaves of it */
     bool day_given;
     bool sun_angle_given, lamp_given, lamp_intensity_given;
     bool size_given, eye_given, target_given, fov_given, sun_given, sun_irradiance_given, sky_given,
-        exposure_given;
+        exposure_given, visibility_given, air_height_given;
 } cli_picture;
 
 extern cli_picture cli_picture_values;

@@ -6,6 +6,7 @@
 
 #include "cli_picture.h"
 #include "cli_scene.h"
+#include "shape/air.h"
 
 static void take(bool in_scene, const double *from, int count, double *to, bool *given)
 {
@@ -40,6 +41,10 @@ void cli_picture_use_scene(const shape_scene *scene)
     take(scene->lamp_given, scene->lamp_intensity, 3, v->lamp_intensity, &v->lamp_intensity_given);
     take(scene->lamp_given, scene->lamp, 3, v->lamp, &v->lamp_given);
     use_sky(scene, v);
+    if (!v->visibility_given || v->visibility > 0) /* the command line may take a scene's air away */
+        take(scene->air_given && scene->air_height > 0, &scene->air_height, 1, &v->air_height,
+             &v->air_height_given);
+    take(scene->air_given, &scene->visibility, 1, &v->visibility, &v->visibility_given);
     take(scene->eye_given, scene->eye, 3, v->eye, &v->eye_given);
     take(scene->target_given, scene->target, 3, v->target, &v->target_given);
     take(scene->fov_given, &scene->fov, 1, &v->fov, &v->fov_given);
@@ -81,6 +86,9 @@ static void save_light(const cli_picture *v, const shape_light *light, shape_sce
     scene->lamp_given = v->lamp_given;
     memcpy(scene->lamp, v->lamp, sizeof v->lamp);
     memcpy(scene->lamp_intensity, v->lamp_intensity, sizeof v->lamp_intensity);
+    scene->air_given = shape_air_is(&light->air);
+    scene->visibility = light->air.visibility;
+    scene->air_height = light->air.height;
     scene->sky = light->sky;
     for (int i = 0; i < 3; i++)
         scene->sky_radiance[i] = (double)light->sky_radiance[i];

@@ -147,6 +147,10 @@ static void read_scene(const chart_plan *plan, const char *path, chart_scene *sc
     choose_size(plan, &sized);
     cli_picture_values.size[0] = sized.width;
     cli_picture_values.size[1] = sized.height;
+    if (cli_picture_values.visibility > 0)
+        cli_say("note: %s: the air is left out, since the methods of 2018 could not show it", path);
+    cli_picture_values.visibility = cli_picture_values.air_height = 0;
+    cli_picture_values.air_height_given = false;
     cli_picture_apply(input.set, &scene->view, &scene->light);
     scene->sun_angle = cli_picture_values.sun_angle;
     scene->side = max.x - min.x > max.y - min.y ? max.x - min.x : max.y - min.y;

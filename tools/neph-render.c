@@ -368,6 +368,8 @@ static void check_method(void)
             "octaves or another that looks along a way)");
     if (method != REFERENCE && samples_given && samples > 4096)
         cli_wrong("--spp %d: --method %s takes at most 4096", (int)samples, method_names[method]);
+    if (method >= PAPER && cli_given("visibility") && cli_picture_values.visibility > 0)
+        cli_wrong("--visibility: the methods of 2018 have no air (choose reference or march)");
     if (method >= PAPER && render_opaque_given())
         cli_wrong("--mesh: the methods of 2018 have no opaque things (choose reference or march)");
     if (method < PAPER && paper_lod)
@@ -391,6 +393,9 @@ static void use_scene(const cli_input *input)
     if (!input->scene)
         return;
     cli_picture_use_scene(input->scene);
+    if (method >= PAPER && input->scene->air_given)
+        cli_say("note: --method %s does not show the scene's air (reference and march do)",
+                method_names[method]);
     if (method >= PAPER && input->scene->lamp_given)
         cli_say("note: --method %s does not show the scene's lamp (reference and march do)",
                 method_names[method]);

@@ -137,6 +137,9 @@ static void add_settings(SHA2_CTX *sum, const shape_view *v, const shape_light *
         o->lamp.position.x, o->lamp.position.y, o->lamp.position.z, (double)o->lamp.intensity[0],
         (double)o->lamp.intensity[1], (double)o->lamp.intensity[2], o->max_bounces,
         (unsigned long long)o->seed);
+    if (l->air.visibility > 0)
+        length += snprintf(text + length, sizeof text - (size_t)length, " air %.17g %.17g", l->air.visibility,
+                           l->air.height);
     cli_given_text(cli_optics_options, text, sizeof text);
     cli_given_text(cli_volume_options, text, sizeof text);
     SHA256Update(sum, (const uint8_t *)text, (size_t)length + strlen(text + length));

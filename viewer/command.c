@@ -47,7 +47,7 @@ static void add_knobs(text_end *end, const view_state *state, const view_state *
 {
     for (size_t i = 0; i < view_knob_count; i++) {
         const view_knob *knob = &view_knobs[i];
-        if (!knob->option || (knob->of != VIEW_OF_STATE) != of_cloud)
+        if (!knob->option || !strcmp(knob->group, "Air") || (knob->of != VIEW_OF_STATE) != of_cloud)
             continue;
         bool day = !strcmp(knob->group, "Day");
         if (day && !state->course.day_runs)
@@ -153,6 +153,10 @@ static void add_light(text_end *end, const view_state *state, bool scene)
         add(end, " --sky none");
     else if (state->sky == SHAPE_SKY_CONSTANT)
         add(end, " --sky %.9g,%.9g,%.9g", (double)sky[0], (double)sky[1], (double)sky[2]);
+    if (scene || state->air.visibility > 0)
+        add(end, " --visibility %.9g", state->air.visibility);
+    if (state->air.visibility > 0 && (scene || state->air.height > 0))
+        add(end, " --air-height %.9g", state->air.height);
 }
 
 void view_command_write(const view_state *state, const view_state *base, const view_command *command,

@@ -421,6 +421,7 @@ static void finish_state(view_job *job)
     memcpy(s->sun_irradiance, job->light.sun_irradiance, sizeof s->sun_irradiance);
     s->sky = job->light.sky;
     memcpy(s->sky_radiance, job->light.sky_radiance, sizeof s->sky_radiance);
+    s->air = job->light.air;
     s->generator = job->generator;
 }
 
@@ -502,6 +503,11 @@ int main(int argc, char **argv)
     }
     if (!opened.volume && !other.volume)
         cli_refuse_volume_options();
+    if (method >= SHAPE_GL_PAPER && cli_picture_values.visibility > 0) {
+        if (cli_given("visibility"))
+            cli_wrong("--visibility: the methods of 2018 have no air (choose default or exact)");
+        cli_say("note: the scene's air is not shown by --method %s", method_names[method]);
+    }
     if (cli_picture_values.lamp_given)
         cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
     job.opaque = render_opaque_read(&opened.input);

@@ -298,6 +298,15 @@ void draw_light(const view_panel_input &in)
         explain_value("of the sky: red, green, blue", s.sky_radiance, start.sky_radiance,
                       sizeof s.sky_radiance);
     }
+    bool air = s.air.visibility > 0;
+    const bool air_start = start.air.visibility > 0;
+    const bool air_turned = ImGui::Checkbox("air", &air);
+    explain_value("between the clouds: far things fade into the sky, and shadows are seen as shafts", &air,
+                  &air_start, sizeof air);
+    if (air_turned || air != (s.air.visibility > 0))
+        s.air.visibility = air ? (air_start ? start.air.visibility : 1000) : 0;
+    if (air)
+        turn_group("Air", in, 0);
 }
 
 // Of a split picture: by which method, and of which file.

@@ -86,6 +86,7 @@ shape_light view_state_light(const view_state *state)
     memcpy(light.sun_irradiance, state->sun_irradiance, sizeof light.sun_irradiance);
     light.sky = state->sky;
     memcpy(light.sky_radiance, state->sky_radiance, sizeof light.sky_radiance);
+    light.air = state->air;
     view_course_light(&state->course, state->time, &light);
     return light;
 }
@@ -186,7 +187,8 @@ bool view_state_same_light(const view_state *a, const view_state *b)
     shape_light x = view_state_light(a), y = view_state_light(b);
     return x.sun.x == y.sun.x && x.sun.y == y.sun.y && x.sun.z == y.sun.z && x.sky == y.sky &&
            !memcmp(x.sun_irradiance, y.sun_irradiance, sizeof x.sun_irradiance) &&
-           !memcmp(x.sky_radiance, y.sky_radiance, sizeof x.sky_radiance);
+           !memcmp(x.sky_radiance, y.sky_radiance, sizeof x.sky_radiance) &&
+           x.air.visibility == y.air.visibility && x.air.height == y.air.height;
 }
 
 /* --- undo --- */

@@ -51,6 +51,7 @@ typedef struct view_state {
     float sun_irradiance[3];  /* before the air's share where the day runs */
     shape_sky_kind sky;
     float sky_radiance[3];
+    shape_air air;
     view_course course;
     double time;              /* seconds */
     int method, other_method; /* shape_gl_method; the second for the right half of a split picture */

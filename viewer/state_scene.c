@@ -287,6 +287,9 @@ static void save_light(const view_state *state, shape_scene *scene)
         scene->sun_irradiance[i] = view_neat(state->sun_irradiance[i]);
         scene->sky_radiance[i] = view_neat(state->sky_radiance[i]);
     }
+    scene->air_given = state->air.visibility > 0;
+    scene->visibility = state->air.visibility;
+    scene->air_height = state->air.height;
     scene->day_given = state->course.day_runs;
     scene->day = state->course.day;
     scene->eye_given = scene->target_given = scene->fov_given = scene->exposure_given = true;
@@ -314,6 +317,9 @@ void view_state_load_light(view_state *state, const shape_scene *scene)
         state->sky = scene->sky;
         to_floats(scene->sky_radiance, state->sky_radiance);
     }
+    state->air = (shape_air){0};
+    if (scene->air_given)
+        state->air = (shape_air){scene->visibility, scene->air_height};
     state->course.day_runs = scene->day_given;
     if (scene->day_given)
         state->course.day = scene->day;

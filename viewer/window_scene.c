@@ -45,6 +45,10 @@ static void take_light(window_state *w, const shape_scene *n, const shape_scene 
         s->sky = b->sky = n->sky;
         take_floats(n->sky_radiance, s->sky_radiance, b->sky_radiance);
     }
+    if (n->air_given != o->air_given || n->visibility != o->visibility || n->air_height != o->air_height) {
+        const shape_air air = {n->visibility, n->air_height};
+        w->state.air = w->base.air = air;
+    }
 }
 
 static void take_camera(window_state *w, const shape_scene *n, const shape_scene *o)

@@ -157,6 +157,27 @@ shape_status scene_sky(scene_reader *r, const json_t *value, void *to)
     return SHAPE_OK;
 }
 
+static shape_status air_visibility(scene_reader *r, const json_t *value, void *to)
+{
+    ((shape_scene *)to)->air_given = true;
+    return scene_read_number(r, value, 1e-3, 1e12, &((shape_scene *)to)->visibility);
+}
+
+static shape_status air_height(scene_reader *r, const json_t *value, void *to)
+{
+    return scene_read_number(r, value, 1e-3, 1e12, &((shape_scene *)to)->air_height);
+}
+
+static const scene_member air_members[] = {{"visibility", air_visibility, 0}, {"height", air_height, 0}, {0}};
+
+shape_status scene_air(scene_reader *r, const json_t *value, void *to)
+{
+    shape_status status = scene_read_object(r, value, air_members, to);
+    if (!status && !((shape_scene *)to)->air_given)
+        status = scene_wrong(r, "has no visibility (say how far one sees, in metres)");
+    return status;
+}
+
 /* --- camera --- */
 
 static shape_status camera_eye(scene_reader *r, const json_t *value, void *to)

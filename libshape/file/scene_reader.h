@@ -65,6 +65,7 @@ shape_status scene_meshes(scene_reader *r, const json_t *value, void *to);
 shape_status scene_sun(scene_reader *r, const json_t *value, void *to);
 shape_status scene_lamp(scene_reader *r, const json_t *value, void *to);
 shape_status scene_sky(scene_reader *r, const json_t *value, void *to);
+shape_status scene_air(scene_reader *r, const json_t *value, void *to);
 shape_status scene_camera(scene_reader *r, const json_t *value, void *to);
 shape_status scene_exposure(scene_reader *r, const json_t *value, void *to);
 

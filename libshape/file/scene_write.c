@@ -316,6 +316,16 @@ static void put_light(writer *w, const shape_scene *scene, bool *first)
         else
             put_text(w, scene->sky == SHAPE_SKY_NONE ? "none" : "clear");
     }
+    if (scene->air_given) {
+        put_key(w, first, "\n  ", "air");
+        fputs("{\"visibility\": ", w->out);
+        put_number(w, scene->visibility);
+        if (scene->air_height > 0) {
+            fputs(", \"height\": ", w->out);
+            put_number(w, scene->air_height);
+        }
+        fputc('}', w->out);
+    }
 }
 
 static void put_camera(writer *w, const shape_scene *scene, bool *first)

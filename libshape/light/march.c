@@ -212,7 +212,7 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
 
 static shape_status make_blue(shape_marcher *m, shape_error *error)
 {
-    if (m->options.jitter != SHAPE_JITTER_BLUE)
+    if (m->options.jitter != SHAPE_JITTER_BLUE && !m->has_air)
         return SHAPE_OK;
     m->blue = malloc(BLUENOISE_COUNT * sizeof *m->blue);
     return m->blue ? bluenoise_make(m->options.seed, m->blue, error) : shape_error_memory(error);
@@ -245,6 +245,9 @@ shape_status shape_marcher_create(const shape_volume *volume, const shape_light 
     for (int c = 0; c < 3; c++)
         m->has_sun = m->has_sun || light->sun_irradiance[c] > 0;
     m->has_lamp = shape_lamp_shines(&options->lamp);
+    m->has_air = shape_air_is(&light->air);
+    if (m->has_air)
+        shape_air_mean(&m->sky, m->sky_mean);
     find_box(m);
     choose_steps(m);
     shape_sky_mean(&m->sky, m->upper, m->lower);
@@ -290,6 +293,7 @@ void shape_march_scratch_free(shape_march_scratch *scratch)
     march_path_free(&scratch->view);
     march_path_free(&scratch->sun);
     shape_candidates_free(&scratch->shadow);
+    free(scratch->air);
     memset(scratch, 0, sizeof *scratch);
 }
 
@@ -348,9 +352,11 @@ static void march_panels(march_ray *ray, const panels *p, float end)
     /* A step that begins later makes the first one shorter and adds one. */
     for (double x = ray->first; ray->depth < ray->marcher->deep && a < end; x++) {
         float b = fminf((float)panel_end(p, x), end);
+        march_air_knot(ray, (double)a);
         /* Most steps by voxels are seen where there is nothing. */
         if (b > a && !(voxels && is_empty(voxels, &local, a + (b - a) * 0.5f)))
             march_panel(ray, rule, a, b);
+        march_air_knot(ray, (double)b);
         a = b;
         if (x >= p->count)
             break;
@@ -419,6 +425,9 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
                shape_opaque_find(marcher->options.opaque, origin, direction, INFINITY, &hit);
     /* A few roundings before the surface (Páleník's bias b), or a sample at the end could lie behind it, in its shadow. */
     float end = met ? (float)(hit.t * (1 - 2.5e-7)) : INFINITY;
+    scratch->air_count = 0;
+    if (marcher->has_air)
+        ray.air = shape_air_along(&marcher->light, &marcher->sky, marcher->sky_mean, origin, direction);
     for (size_t i = 0; i < count && scratch->view.edges[i] < end; i += 2)
         march_interval(&ray, scratch->view.edges[i], scratch->view.edges[i + 1], end);
     double behind[3] = {0, 0, 0}, left = exp(-ray.depth);
@@ -429,12 +438,26 @@ shape_status shape_march_radiance(const shape_marcher *marcher, shape_dvec3 orig
     }
     if (left > 0)
         march_background(&ray, met ? &hit : NULL, behind);
+    double airlight[3] = {0, 0, 0};
+    if (marcher->has_air)
+        left *= march_air_add(&ray, met ? hit.t : INFINITY, gain, airlight);
     for (int c = 0; c < 3; c++)
-        rgb[c] = gain * ray.rgb[c] + left * behind[c];
+        rgb[c] = gain * ray.rgb[c] + left * behind[c] + airlight[c];
     return ray.status;
 }
 
 /* --- a picture --- */
+
+static double golden(double start, int i)
+{
+    start += 0.6180339887498949 * i;
+    return start - floor(start);
+}
+
+static double blue_start(const shape_marcher *m, int x, int y)
+{
+    return (m->blue[y % BLUENOISE_SIZE * BLUENOISE_SIZE + x % BLUENOISE_SIZE] + 0.5) / BLUENOISE_COUNT;
+}
 
 /* How much later the steps of a pixel's ray number i begin: further rays by the golden ratio. */
 static double jitter(const shape_marcher *m, int width, int x, int y, int i)
@@ -445,11 +468,10 @@ static double jitter(const shape_marcher *m, int width, int x, int y, int i)
     if (m->options.jitter == SHAPE_JITTER_NONE)
         return 0;
     if (m->options.jitter == SHAPE_JITTER_BLUE)
-        start = (m->blue[y % BLUENOISE_SIZE * BLUENOISE_SIZE + x % BLUENOISE_SIZE] + 0.5) / BLUENOISE_COUNT;
+        start = blue_start(m, x, y);
     else
         start = shape_random_unit(&random);
-    start += 0.6180339887498949 * i;
-    return start - floor(start);
+    return golden(start, i);
 }
 
 /* The mean of a pixel's rays: through its middle where there is one, else scattered by the R2 sequence (Roberts 2018). */
@@ -461,6 +483,8 @@ static shape_status render_pixel(const shape_marcher *m, const shape_view *view,
     for (int i = 0; i < n; i++) {
         double u = 0.5 + 0.7548776662466927 * i, v = 0.5 + 0.5698402909980532 * i;
         shape_dvec3 d = shape_camera_direction(camera, view, x + u - floor(u), y + v - floor(v));
+        if (m->has_air)
+            scratch->air_start = golden(blue_start(m, x, y), i);
         shape_status status =
             shape_march_radiance(m, camera->origin, d, jitter(m, view->width, x, y, i), scratch, rgb, NULL);
         if (status)

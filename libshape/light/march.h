@@ -4,6 +4,7 @@
 
 #include "field/grid_ray.h"
 #include "light/bluenoise.h"
+#include "shape/air.h"
 #include "shape/lightgrid.h"
 #include "shape/march.h"
 
@@ -22,14 +23,15 @@ struct shape_marcher {
     shape_sky sky;
     float upper[3], lower[3]; /* mean radiance of the sky's halves */
     shape_march_options options;
-    bool has_sun, has_lamp;
+    bool has_sun, has_lamp, has_air;
+    float sky_mean[3]; /* of the whole sky, for the air */
     double step, light_step;
     double deep; /* the optical depth of options.cutoff */
     const shape_grid
         *voxels;           /* the grid of a volume that is one grid, seen along the ray itself; else NULL */
     shape_dvec3 low, high; /* the world box around all clouds */
     march_cloud *clouds;
-    uint16_t *blue; /* SHAPE_JITTER_BLUE */
+    uint16_t *blue; /* SHAPE_JITTER_BLUE, and for the air; else NULL */
     shape_march_work *work;
 };
 
@@ -49,6 +51,7 @@ typedef struct march_ray {
     double width;         /* of the step that a look stands for [m]; 0: a point */
     shape_dvec3 shift;    /* from the ray to where it is looked at, where starts are locked to a grid */
     double depth, rgb[3]; /* gathered so far */
+    shape_air_ray air;    /* where the marcher has air */
 } march_ray;
 
 /* --- march_path.c: the joined intervals of all clouds on a ray --- */
@@ -96,6 +99,14 @@ double march_grid_value(const shape_lightgrid *grid, const float *cells, int val
 
 /* What a ray sees behind all clouds: the surface that it hit, or the sky. */
 void march_background(march_ray *ray, const shape_opaque_hit *hit, double rgb[3]);
+
+/* --- march_air.c --- */
+
+/* Keeps how deep the clouds are as far as t, which rises from call to call; nothing where there is no air. */
+void march_air_knot(march_ray *ray, double t);
+/* What the air before `end` sends to the eye, added to rgb, and the share of the light from there that it lets pass. gain: how
+ * coverage is corrected (1 - exp(-depth) times it). */
+double march_air_add(march_ray *ray, double end, double gain, double rgb[3]);
 
 /* --- march_rules.c --- */
 

@@ -172,5 +172,10 @@ march_sample march_look(march_ray *ray, float t)
             sample.added[c] +=
                 (at.extinction > 0 ? at.extinction * rgb[c] : 0) + density * (double)m->options.emission[c];
     }
+    if (m->has_air) {
+        double passed = exp(-shape_air_depth(&ray->air, (double)t));
+        for (int c = 0; c < 3; c++)
+            sample.added[c] *= passed;
+    }
     return sample;
 }

@@ -30,6 +30,10 @@ path_scene path_scene_make(const majorant_grid *grid, const shape_light *light,
     s.has_lamp = shape_lamp_shines(&options->lamp);
     s.max_bounces = options->max_bounces;
     s.opaque = options->opaque;
+    s.has_air = shape_air_is(&light->air);
+    s.light = *light;
+    if (s.has_air)
+        shape_air_mean(&s.sky, s.sky_mean);
     return s;
 }
 
@@ -211,16 +215,46 @@ static void add_sky(const path_scene *s, light_path *path)
         path->rgb[c] += path->weight * path->tint[c] * (double)sky[c];
 }
 
-/* To the next collision or surface; false where there is none, and the path ends in the sky or in black. */
-static bool advance(const path_scene *s, light_path *path, double depth, bool last, scatterer *at)
+/* The air before a first event at `length` [m], infinite for the sky, on a path that began at p. Its light is the sky's,
+ * in closed form; only what it lacks in the shadow is left to chance, at one place drawn by its share in that light. */
+static void add_air(const path_scene *s, light_path *path, const double p[3], double length)
+{
+    shape_dvec3 origin = to_world(s, p), d = {path->d[0], path->d[1], path->d[2]};
+    shape_air_ray air = shape_air_along(&s->light, &s->sky, s->sky_mean, origin, d);
+    double passed = exp(-shape_air_depth(&air, length)), way[3] = {s->sun[0], s->sun[1], s->sun[2]};
+    double lit = isinf(length) ? 0 : 1 - passed,
+           dark = 0; /* what comes from the sky has the air in it already */
+    light_path here = *path;
+    double t = shape_air_distance(&air, -log1p(-track_unit(path->random) * (1 - passed)));
+    for (int i = 0; i < 3; i++)
+        here.p[i] = p[i] + t * path->d[i];
+    if (s->sun_cos < 1)
+        path_turn(way, 1 - track_unit(path->random) * (1 - s->sun_cos), path->random);
+    if (s->has_sun && passed < 1 && isfinite(t) && is_shadowed(s, &here, way, INFINITY))
+        dark = 1 - passed;
+    for (int c = 0; c < 3; c++)
+        path->rgb[c] += air.sky[c] * (lit - dark * air.share[c]);
+    if (isfinite(length))
+        path->weight *= passed;
+}
+
+/* To the next collision or surface, *length metres ahead; false where there is none, and the path ends in the sky or in
+ * black. */
+static bool advance(const path_scene *s, light_path *path, double depth, bool last, scatterer *at,
+                    double *length)
 {
     shape_opaque_hit hit = {.t = INFINITY};
     uint32_t cloud = 0;
     bool met =
         s->opaque && shape_opaque_find(s->opaque, to_world(s, path->p),
                                        shape_dvec3_make(path->d[0], path->d[1], path->d[2]), INFINITY, &hit);
-    if (track_collide(s->grid, path->p, path->d, hit.t, depth, path->random, &cloud))
+    double from[3] = {path->p[0], path->p[1], path->p[2]};
+    *length = hit.t;
+    if (track_collide(s->grid, path->p, path->d, hit.t, depth, path->random, &cloud)) {
+        double way[3] = {path->p[0] - from[0], path->p[1] - from[1], path->p[2] - from[2]};
+        *length = dot(way, path->d);
         return !last && collide(path, &s->grid->clouds[cloud], at);
+    }
     if (!met) {
         add_sky(s, path);
         return false;
@@ -233,8 +267,13 @@ void path_gather(const path_scene *s, const double p[3], const double d[3], doub
 {
     light_path way = {{p[0], p[1], p[2]}, {d[0], d[1], d[2]}, 1, {1, 1, 1}, random, rgb};
     scatterer at = {NULL, {0, 0, 0}};
-    double depth = -log(first);
-    for (int bounce = 0; advance(s, &way, depth, bounce == s->max_bounces, &at); bounce++) {
+    double depth = -log(first), length;
+    for (int bounce = 0;; bounce++) {
+        bool goes_on = advance(s, &way, depth, bounce == s->max_bounces, &at, &length);
+        if (bounce == 0 && s->has_air)
+            add_air(s, &way, p, length);
+        if (!goes_on)
+            return;
         if (s->has_sun)
             add_sun(s, &way, &at);
         if (s->has_lamp)

@@ -3,6 +3,7 @@
 #define SHAPE_LIGHT_PATH_H
 
 #include "light/track.h"
+#include "shape/air.h"
 #include "shape/pathtrace.h"
 
 /* All that a path needs to know, made ready once. */
@@ -14,6 +15,9 @@ typedef struct path_scene {
     double lamp[3], intensity[3];
     int max_bounces;
     const shape_opaque *opaque;
+    bool has_air;
+    shape_light light; /* what the air is made of, and the sky's mean */
+    float sky_mean[3];
 } path_scene;
 
 path_scene path_scene_make(const majorant_grid *grid, const shape_light *light,

@@ -55,8 +55,16 @@ shape_status shape_view_check(const shape_view *view, shape_error *error)
     return SHAPE_OK;
 }
 
+static bool is_length(double metres)
+{
+    return metres == 0 || (metres >= 1e-3 && metres <= 1e12);
+}
+
 shape_status shape_light_check(const shape_light *light, shape_error *error)
 {
+    if (!is_length(light->air.visibility) || !is_length(light->air.height))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
+                               "light air: visibility and height must be 0, or from 0.001 to 1e12 metres");
     if (!(fabs(shape_dvec3_length(light->sun) - 1) <= 1e-3))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "light sun: must be a unit vector");
     if (light->sky < SHAPE_SKY_NONE || light->sky > SHAPE_SKY_CLEAR)

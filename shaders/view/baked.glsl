@@ -1,5 +1,8 @@
 // One cloud's baked density and light along a ray, and the march through them. load_baked reads what a ray needs from the
 // cloud's record; view/preview_one.frag has it from the corners of its tile instead.
+#ifdef AIR
+#include "view/air.glsl"
+#endif
 uniform highp sampler3D baked;      // density, distance in blocks of 4 voxels; all clouds in one atlas
 uniform highp sampler3D light_seen; // source function towards the eye, placed like the light grids
 uniform float step_scale;           // steps, in voxels
@@ -61,7 +64,11 @@ vec2 baked_at(float t)
 vec3 light_at(float t)
 {
     fetches += 1.0;
-    return texture(light_seen, clamp(light_base + t * light_slope, light_low, light_high)).rgb;
+    vec3 light = texture(light_seen, clamp(light_base + t * light_slope, light_low, light_high)).rgb;
+#ifdef AIR
+    light = through_air(light, t);
+#endif
+    return light;
 }
 
 // How far the empty blocks around a sample reach: the filter may have mixed in a neighbour's number, one less or more.

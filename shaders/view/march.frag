@@ -9,6 +9,9 @@
 #include "light/sky.glsl"
 #include "view/camera.glsl"
 #include "view/surface.glsl"
+#ifdef AIR
+#include "view/air.glsl"
+#endif
 
 uniform float step_scale;     // steps, in cells of the noise's first octave
 uniform float step_growth;    // steps grow with distance: metres a metre, about a pixel
@@ -37,14 +40,18 @@ float step_length_of(float t, float deep)
 
 float step_length(float t) { return step_length_of(t, step_deep); }
 
-// Source function of the loaded cloud at p, towards the eye: radiance per unit of extinction.
-vec3 light_at(vec3 p)
+// Source function of the loaded cloud at p, towards the eye: radiance per unit of extinction, seen through the air before t.
+vec3 light_at(vec3 p, float t)
 {
     vec4 slot = cloud_texel(cloud_index, 8), size = cloud_texel(cloud_index, 9);
     vec4 low = cloud_texel(cloud_index, 10), high = cloud_texel(cloud_index, 11);
     vec3 cell = clamp((p - low.xyz) / (high.xyz - low.xyz) * size.xyz, vec3(0.5), size.xyz - 0.5);
     fetches += 5.0;
-    return texture(light_seen, (slot.xyz + cell) / vec3(textureSize(light_seen, 0))).rgb;
+    vec3 light = texture(light_seen, (slot.xyz + cell) / vec3(textureSize(light_seen, 0))).rgb;
+#ifdef AIR
+    light = through_air(light, t);
+#endif
+    return light;
 }
 
 void add_segment(float extinction, vec3 source, float width)
@@ -73,7 +80,7 @@ void march_one(int first, int end, float t1)
         fetches += float(cloud_octaves);
         work += cloud_octaves + 2;
         if (density > 0.0)
-            add_segment(density * cloud_extinction, light_at(p), width);
+            add_segment(density * cloud_extinction, light_at(p, s), width);
         reached = width < t1 - reached ? reached + width : t1;
     }
 }
@@ -101,7 +108,7 @@ void mixed_at(int first, int end, float s, bool crowded, out float extinction, o
         work += cloud_octaves + 2;
         if (density > 0.0) {
             extinction += density * cloud_extinction;
-            source += density * cloud_extinction * light_at(p);
+            source += density * cloud_extinction * light_at(p, s);
         }
         last = c;
     }
@@ -163,13 +170,14 @@ void march_crowd(float last)
     load_cloud(int(candidate[0].w), ray);
     while (reached < until && going_on()) {
         float width = min(step_length(reached), until - reached);
-        vec3 p = cloud_origin + (reached + width * random_start) * cloud_direction;
+        float s = reached + width * random_start;
+        vec3 p = cloud_origin + s * cloud_direction;
         float density = density_at(p, cloud_u2(p, work));
         steps += 1.0;
         fetches += float(cloud_octaves);
         work += cloud_octaves + 2;
         if (density > 0.0)
-            add_segment(density * cloud_extinction, light_at(p), width);
+            add_segment(density * cloud_extinction, light_at(p, s), width);
         reached = width < until - reached ? reached + width : until;
     }
 #else
@@ -188,6 +196,9 @@ void main()
     float ray_end = behind.a; // where something opaque stands, or nothing
     ray = camera_ray();
     random_start = pixel_random();
+#ifdef AIR
+    load_air(ray, floor(gl_FragCoord.xy), sky_radiance(ray));
+#endif
     fetches = steps = candidates_seen = reached = 0.0;
     work = 0;
     work_end = 0; // not known before the first look
@@ -240,6 +251,11 @@ void main()
         transmittance = 0.0;
     }
     bool sky = behind.a > NO_SURFACE;
-    radiance_out = vec4(radiance + transmittance * (sky ? sky_radiance(ray) : behind.rgb), sky ? 1.0 - transmittance : 1.0);
+#ifdef AIR
+    behind.rgb = sky ? sky_through_air() : through_air(behind.rgb, behind.a);
+#else
+    behind.rgb = sky ? sky_radiance(ray) : behind.rgb;
+#endif
+    radiance_out = vec4(radiance + transmittance * behind.rgb, sky ? 1.0 - transmittance : 1.0);
     work_out = vec4(steps, fetches, -1.0, candidates_seen);
 }

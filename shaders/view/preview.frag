@@ -110,6 +110,9 @@ void main()
     random_start = pixel_random_at(pixel);
     fetches = steps = 0.0;
     ray_end = surface_at(pixel).a;
+#ifdef AIR
+    load_air(ray, pixel, sky_behind(pixel));
+#endif
     for (float t = 0.0; t < ray_end && transmittance > transmittance_end;) {
         gather_boxes(t);
         if (candidate_count == 0)

@@ -4,6 +4,10 @@
 #include "field/interval.glsl"
 float transmittance = 1.0;
 vec3 radiance = vec3(0.0);
+#ifdef AIR
+#include "view/camera.glsl"
+#include "view/air.glsl"
+#endif
 #include "view/preview_out.glsl"
 
 uniform highp sampler2D coarse_picture; // radiance without the sky, transmittance
@@ -20,6 +24,9 @@ bool surfaces_differ(ivec2 low, ivec2 high, float here)
 void main()
 {
     vec2 pixel = drawn_pixel();
+#ifdef AIR
+    load_air(camera_ray_at(pixel), pixel, sky_behind(pixel));
+#endif
     ivec2 whole = ivec2(pixel), low = whole / 2, last = textureSize(coarse_picture, 0) - 1;
     fetches = 4.0;
     steps = 0.0;

@@ -29,6 +29,9 @@ void main()
     fetches = steps = 0.0;
     random_start = pixel_random_at(pixel);
     load_tile(camera_ray_at(pixel));
+#ifdef AIR
+    load_air(camera_ray_at(pixel), pixel, sky_behind(pixel));
+#endif
     float t0 = 0.0, t1 = 1e30;
     if (!box_intersect(tile_low.xyz, tile_high.xyz, cloud_origin, cloud_direction, t0, t1))
         t1 = -1.0;

@@ -15,7 +15,12 @@ void put_pixel(vec2 pixel)
     else {
         vec4 behind = surface_at(pixel);
         bool sky = behind.a > NO_SURFACE;
-        radiance_out = vec4(radiance + transmittance * (sky ? sky_behind(pixel) : behind.rgb), sky ? 1.0 - transmittance : 1.0);
+#ifdef AIR
+        behind.rgb = sky ? sky_through_air() : through_air(behind.rgb, behind.a);
+#else
+        behind.rgb = sky ? sky_behind(pixel) : behind.rgb;
+#endif
+        radiance_out = vec4(radiance + transmittance * behind.rgb, sky ? 1.0 - transmittance : 1.0);
     }
     work_out = vec4(steps, fetches, 0.0, 0.0);
 }

@@ -112,6 +112,7 @@ typedef struct gl_order {
     bool first;                 /* something coarse, to begin with */
     bool missing_only;          /* whatever is there already does */
     bool lenient;               /* what is a little too fine does */
+    bool all_clouds;            /* light those out of sight, too: their shadows are seen */
     const gl_light *light_from; /* clouds' grids are taken over from these where they do; NULL: none do */
     const gl_baked *baked_from;
     shape_lightgrid_options light_options;
@@ -238,8 +239,14 @@ typedef struct gl_surface {
 /* The sun's share that clouds let through to each cell of a cloud's light grid; options: that grid's. Needs no OpenGL. */
 shape_status gl_shade_make(const gl_order *order, const shape_lightgrid_options *light_options, size_t cloud,
                            gl_lit *lit, shape_error *error);
-/* All of them at their places in light->shade. */
+/* All of them at their places in light->shade; from the light itself where nothing is opaque. */
 shape_status gl_shade_pack(gl_light *light, shape_error *error);
+/* Tells a program what clouds leave of the sun (shaders/light/shade.glsl): all clouds' records for this eye, in the texture
+ * `clouds`, and the share of the sun in their grids. */
+shape_status gl_shade_set(shape_gl_renderer *renderer, GLuint program, GLuint clouds, shape_dvec3 eye,
+                          shape_error *error);
+/* The same of things: the map of what the sun sees of them. */
+void gl_set_things(const shape_gl_renderer *renderer, GLuint program, shape_dvec3 eye);
 /* Uploads the triangles of options.light.opaque, if there are any. */
 shape_status gl_surface_load(shape_gl_renderer *renderer, shape_error *error);
 shape_status gl_surface_resize(gl_surface *surface, int width, int height, shape_error *error);
@@ -266,6 +273,14 @@ typedef struct gl_preview {
     bool moving;           /* the last picture was a moving view's */
 } gl_preview;
 
+/* What the air needs, see air.c. */
+typedef struct gl_air {
+    GLuint slice, sum;              /* programs */
+    GLuint textures[2];             /* the shadow in slices, and its sum */
+    GLuint framebuffers[2], clouds; /* clouds: records of all clouds, in sight or not */
+    int size[2];                    /* of a slice's picture */
+} gl_air;
+
 typedef struct gl_refinement gl_refinement;
 enum { GL_FADE_FRAMES = 6 }; /* from old grids to new ones */
 
@@ -282,6 +297,8 @@ struct shape_gl_renderer {
     bool light_changed, refined;
     gl_preview preview;
     gl_surface surface;
+    gl_air air;
+    bool with_air; /* what the programs were made for */
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
@@ -324,9 +341,21 @@ void gl_surface_draw(shape_gl_renderer *renderer, const gl_frame *frame);
 /* Tells a marching program where rays end; the program is in use. */
 void gl_set_surface(const shape_gl_renderer *renderer, GLuint program);
 
+/* --- air.c --- */
+
+/* Whether this renderer shows any. */
+bool gl_has_air(const shape_gl_renderer *renderer);
+/* Lays out the shadow of the air for a frame, where there is air; after gl_surface_draw. */
+shape_status gl_air_draw(shape_gl_renderer *renderer, const gl_frame *frame, shape_error *error);
+/* Tells a marching program of it; the program is in use. */
+void gl_set_air(const shape_gl_renderer *renderer, GLuint program, shape_dvec3 eye);
+void gl_air_free(gl_air *air);
+
 /* --- preview.c: the default method --- */
 
-shape_status gl_preview_create(gl_preview *preview, const char *folder, shape_error *error);
+/* defines: of all programs, "" or "#define AIR\n". Makes them anew where they are there. */
+shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines,
+                               shape_error *error);
 shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
 void gl_preview_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame);
 void gl_preview_free(gl_preview *preview);

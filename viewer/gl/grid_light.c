@@ -70,8 +70,11 @@ gl_fit gl_light_fit(const gl_light *light, const gl_order *order, double wider)
     shape_camera camera = shape_view_camera(&order->view);
     for (int i = 0; i < light->count && !order->paper; i++) {
         const shape_volume_cloud *c = &order->volume->clouds[i];
-        if (!c->tree->count || !gl_in_sight(c, &camera, wider))
+        if (!c->tree->count || !gl_in_sight(c, &camera, wider)) {
+            if (c->tree->count && order->all_clouds && !light->lit[i])
+                return GL_MISSING;
             continue;
+        }
         if (!light->lit[i])
             return GL_MISSING;
         gl_fit own = gl_fit_sizes(light->lit[i]->wanted, wanted_cells(order, (size_t)i));
@@ -89,9 +92,9 @@ static void choose(const gl_order *order, gl_light *light, int *cells)
     for (size_t i = 0; i < order->volume->cloud_count; i++) {
         const shape_volume_cloud *c = &order->volume->clouds[i];
         gl_lit *last = old ? old->lit[i] : NULL;
-        /* Clouds throw their shadows on things from wherever they are. */
-        bool near = order->paper || order->light_options.opaque ||
-                    (c->tree->count && gl_in_sight(c, &camera, GL_MARGIN));
+        /* Clouds throw their shadows on things and into the air from wherever they are. */
+        bool near =
+            order->paper || order->all_clouds || (c->tree->count && gl_in_sight(c, &camera, GL_MARGIN));
         int own = near ? wanted_cells(order, i) : 0;
         bool good = last && near &&
                     (order->missing_only || last->wanted == own ||

@@ -51,7 +51,7 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     static const char whole[] = "view/fullscreen.vert";
     shape_status status = SHAPE_OK;
     if (options->method == SHAPE_GL_DEFAULT)
-        status = gl_preview_create(&made->preview, folder, error);
+        status = gl_preview_create(&made->preview, folder, "", error);
     if (!status)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
@@ -86,6 +86,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     gl_surface_free(&renderer->surface);
     glDeleteProgram(renderer->view_programs[0]);
     glDeleteProgram(renderer->view_programs[1]);
+    gl_air_free(&renderer->air);
     glDeleteProgram(renderer->tonemap);
     glDeleteProgram(renderer->density);
     glDeleteProgram(renderer->copy);
@@ -122,16 +123,16 @@ static bool is_plain(const shape_volume *volume)
 }
 
 /* What the shaders of the whole picture may leave out for a volume: a number for each such set of lines. */
-static int view_defines(const shape_volume *volume, char *defines, size_t size)
+static int view_defines(const shape_volume *volume, bool air, char *defines, size_t size)
 {
     const shape_volume_cloud *c = volume->cloud_count == 1 ? &volume->clouds[0] : NULL;
     bool plain = is_plain(volume), spheres = c && !c->list->ellipsoid_count;
     int octaves = c ? c->field.octaves : 0;
-    snprintf(defines, size, "%s%s%s", plain ? "#define FIELD_PLAIN\n" : "", c ? "#define ONE_CLOUD\n" : "",
-             spheres ? "#define SPHERES_ONLY\n" : "");
+    snprintf(defines, size, "%s%s%s%s", plain ? "#define FIELD_PLAIN\n" : "", c ? "#define ONE_CLOUD\n" : "",
+             spheres ? "#define SPHERES_ONLY\n" : "", air ? "#define AIR\n" : "");
     if (c)
         snprintf(defines + strlen(defines), size - strlen(defines), "#define OCTAVES %d\n", octaves);
-    return 1 + plain + 2 * spheres + 4 * octaves;
+    return 1 + plain + 2 * spheres + 4 * air + 8 * octaves;
 }
 
 /* The view program of the methods that have one for the whole picture, as fits the volume; listed: the one that reads
@@ -141,7 +142,7 @@ static shape_status find_program(shape_gl_renderer *renderer, bool listed, GLuin
 {
     enum { ROOM = 160 };
     char defines[ROOM];
-    int kind = view_defines(renderer->volume, defines, ROOM);
+    int kind = view_defines(renderer->volume, gl_has_air(renderer), defines, ROOM);
     GLuint *known = &renderer->view_programs[listed];
     if (renderer->view_kinds[listed] != kind) {
         glDeleteProgram(*known);
@@ -195,9 +196,21 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     return status;
 }
 
+/* Programs with air, or without. */
+static shape_status change_air(shape_gl_renderer *renderer, shape_error *error)
+{
+    bool air = gl_has_air(renderer);
+    if (air == renderer->with_air)
+        return SHAPE_OK;
+    renderer->with_air = air;
+    if (renderer->options.method != SHAPE_GL_DEFAULT)
+        return prepare_program(renderer, error);
+    return gl_preview_create(&renderer->preview, renderer->options.shader_folder, air ? "#define AIR\n" : "",
+                             error);
+}
+
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
 {
-    (void)error;
     const shape_dvec3 *old = &renderer->light.sun, *sun = &light->sun;
     if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light)
         renderer->light_changed = true;
@@ -205,7 +218,7 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
-    return SHAPE_OK;
+    return change_air(renderer, error);
 }
 
 int shape_gl_largest(void)
@@ -294,6 +307,9 @@ shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, boo
     gl_set_camera(frame, program);
     gl_set_method(renderer, frame->view, program);
     gl_set_surface(renderer, program);
+    gl_set_air(renderer, program, frame->camera->origin);
+    if (gl_has_air(renderer)) /* it lights the air even where it is not seen */
+        gl_set_int(program, "sky_kind", (int)renderer->sky.kind);
     *used = program;
     return SHAPE_OK;
 }
@@ -354,6 +370,7 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     if (!status) {
         gl_light_place(renderer->grids.light, &renderer->scene, renderer->volume);
         gl_surface_draw(renderer, &frame);
+        status = gl_air_draw(renderer, &frame, error);
     }
     if (!status && moving && renderer->fade_left > 0) {
         status = draw_by(renderer, &renderer->last_grids, &frame, error);

@@ -10,7 +10,8 @@ enum { SKY_SPACING = 8 }; /* as in shaders/view/sky_picture.glsl */
 /* How far a pixel's neighbours may differ, in transmittance or relative brightness, for it to be their mean. */
 static const float AGREEMENT = 0.1f;
 
-shape_status gl_preview_create(gl_preview *preview, const char *folder, shape_error *error)
+shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines,
+                               shape_error *error)
 {
     const struct {
         const char *vertex, *fragment;
@@ -21,9 +22,12 @@ shape_status gl_preview_create(gl_preview *preview, const char *folder, shape_er
                     {"view/fullscreen.vert", "view/preview_fill.frag", &preview->fill},
                     {"view/fullscreen.vert", "view/sky.frag", &preview->sky_picture_program}};
     shape_status status = SHAPE_OK;
-    for (size_t i = 0; i < sizeof programs / sizeof *programs && !status; i++)
-        status = gl_program_create(folder, programs[i].vertex, programs[i].fragment, "", programs[i].program,
-                                   error);
+    for (size_t i = 0; i < sizeof programs / sizeof *programs && !status; i++) {
+        glDeleteProgram(*programs[i].program);
+        *programs[i].program = 0;
+        status = gl_program_create(folder, programs[i].vertex, programs[i].fragment, defines,
+                                   programs[i].program, error);
+    }
     return status;
 }
 
@@ -59,6 +63,8 @@ static void draw_sky_picture(const shape_gl_renderer *r, const gl_frame *frame)
     glBindFramebuffer(GL_FRAMEBUFFER, r->preview.sky_picture.framebuffer);
     glViewport(0, 0, r->width / SKY_SPACING + 2, r->height / SKY_SPACING + 2);
     gl_set_light(r, program);
+    if (gl_has_air(r)) /* it lights the air even where it is not seen */
+        gl_set_int(program, "sky_kind", (int)r->sky.kind);
     gl_set_camera(frame, program);
     gl_draw_triangle(r);
 }
@@ -79,6 +85,7 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     gl_set_camera(pass->frame, program);
     gl_set_method(r, pass->frame->view, program);
     gl_set_surface(r, program);
+    gl_set_air(r, program, pass->frame->camera->origin);
     gl_bind(program, "sky_picture", 14, GL_TEXTURE_2D, r->preview.sky_picture.textures[0]);
     gl_set_float(program, "pixel_stride", (float)stride);
     gl_set_float(program, "step_deep", pass->frame->moving ? 2.0f : 0.0f);

@@ -256,6 +256,7 @@ static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
                       .light = &r->light,
                       .paper = r->options.method == SHAPE_GL_PAPER || r->options.method == SHAPE_GL_PAPER_NDT,
                       .light_options = r->options.light,
+                      .all_clouds = r->options.light.opaque || gl_has_air(r),
                       .view = *view,
                       .bake_voxels = r->options.bake_voxels,
                       .texture_limit = largest};

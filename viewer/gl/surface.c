@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "gl_private.h"
-#include "shape/record.h"
 
 enum { MAP_SIDE = 2048, VERTEX_FLOATS = 10 };
 
@@ -193,33 +192,14 @@ static void draw_map(const shape_gl_renderer *r)
     glDisable(GL_DEPTH_TEST);
 }
 
-/* All clouds' records for this eye, and the share of the sun in their grids. */
-static void set_shade(shape_gl_renderer *r, shape_dvec3 eye)
+void gl_set_things(const shape_gl_renderer *r, GLuint program, shape_dvec3 eye)
 {
-    gl_surface *s = &r->surface;
-    gl_light *light = r->grids.light;
-    int count = light && light->shade ? light->count : 0;
-    size_t floats = GL_RECORD_TEXELS * 4;
-    float *rows = malloc(((size_t)count + 1) * floats * sizeof *rows);
-    count = rows ? count : 0;
-    if (count && !light->shade_texture)
-        light->shade_texture = gl_volume_texture(light->size, GL_R32F, GL_RED, GL_FLOAT, light->shade);
-    int shading = 0;
-    for (int i = 0; i < count; i++) {
-        if (!light->lit[i])
-            continue;
-        float *row = rows + (size_t)shading++ * floats;
-        memcpy(row, r->scene.records + (size_t)i * floats, floats * sizeof *rows);
-        shape_record_set_eye((float(*)[4])row, &r->volume->clouds[i], eye);
-    }
-    count = shading;
-    glBindTexture(GL_TEXTURE_2D, s->clouds);
-    if (count)
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, GL_RECORD_TEXELS, count, 0, GL_RGBA, GL_FLOAT, rows);
-    free(rows);
-    gl_bind(s->program, "clouds", 0, GL_TEXTURE_2D, s->clouds);
-    gl_bind(s->program, "shade", 6, GL_TEXTURE_3D, count ? light->shade_texture : 0);
-    gl_set_int(s->program, "cloud_count", count);
+    const gl_surface *s = &r->surface;
+    set_sun(r, program);
+    gl_bind(program, "sun_map", 7, GL_TEXTURE_2D, s->map);
+    gl_set_dvector(program, "middle", shape_dvec3_sub(s->middle, eye));
+    gl_set_int(program, "has_ground", s->has_ground);
+    gl_set_float(program, "ground", (float)(s->ground - eye.y));
 }
 
 void gl_surface_draw(shape_gl_renderer *r, const gl_frame *frame)
@@ -241,12 +221,8 @@ void gl_surface_draw(shape_gl_renderer *r, const gl_frame *frame)
     glClearBufferfv(GL_DEPTH, 0, &far);
     gl_set_light(r, program);
     gl_set_camera(frame, program);
-    set_sun(r, program);
-    set_shade(r, eye);
-    gl_bind(program, "sun_map", 7, GL_TEXTURE_2D, s->map);
-    gl_set_dvector(program, "middle", shape_dvec3_sub(s->middle, eye));
-    gl_set_int(program, "has_ground", s->has_ground);
-    gl_set_float(program, "ground", (float)(s->ground - eye.y));
+    gl_shade_set(r, program, s->clouds, eye, NULL); /* without memory: no shadow of clouds on things */
+    gl_set_things(r, program, eye); /* after it, which binds textures to whatever unit is active */
     gl_set_vector(program, "ground_colour", s->ground_colour);
     glUniform2f(glGetUniformLocation(program, "ground_middle"), (float)-eye.x, (float)-eye.z);
     gl_set_float(program, "ground_reach", (float)(SHAPE_OPAQUE_GROUND_SIDE / 2));

@@ -127,7 +127,10 @@ typedef struct shape_march_path {
 typedef struct shape_march_scratch {
     shape_march_path view, sun;
     shape_candidates shadow;
-    uint64_t looks; /* at points on the rays so far */
+    uint64_t looks;   /* at points on the rays so far */
+    double (*air)[2]; /* distances along the ray, and how deep the clouds are so far, where there is air */
+    size_t air_count, air_capacity;
+    double air_start; /* 0 to below 1: where its looks at the sun begin; like start, another in each pixel */
 } shape_march_scratch;
 void shape_march_scratch_free(shape_march_scratch *scratch);
 

@@ -107,6 +107,10 @@ typedef struct shape_scene {
     shape_sky_kind sky;
     double sky_radiance[3]; /* of SHAPE_SKY_CONSTANT, 0 to 1e9 */
 
+    bool air_given;
+    double visibility; /* of the air [m], 0.001 to 1e12 */
+    double air_height; /* over which it thins by a factor e [m], 0.001 to 1e12; 0: alike at all heights */
+
     bool eye_given, target_given, fov_given, size_given, exposure_given;
     double eye[3], target[3]; /* [m], +-1e12 */
     double fov;               /* vertical, degrees, 0.001 to 179 */

@@ -17,11 +17,19 @@ typedef struct shape_view {
 
 typedef enum shape_sky_kind { SHAPE_SKY_NONE, SHAPE_SKY_CONSTANT, SHAPE_SKY_CLEAR } shape_sky_kind;
 
+/* The air between the eye and what it sees (shape/air.h). All 0, the default: none. */
+typedef struct shape_air {
+    double
+        visibility; /* how far away a black thing is just told from the sky, at height 0 [m], 0.001 to 1e12; 0: no air */
+    double height; /* over which the air thins by a factor e [m], 0.001 to 1e12; 0: alike at all heights */
+} shape_air;
+
 typedef struct shape_light {
     shape_dvec3 sun;         /* unit vector to the sun; default azimuth 60, height 40 degrees */
     float sun_irradiance[3]; /* on a plane facing the sun; default pi each */
     shape_sky_kind sky;      /* default clear */
     float sky_radiance[3];   /* of SHAPE_SKY_CONSTANT */
+    shape_air air;           /* default none */
 } shape_light;
 
 shape_view shape_view_defaults(void);
