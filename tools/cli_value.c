@@ -54,9 +54,10 @@ static bool parse_range(const char *text, double range[2])
 {
     const char *dots = strstr(text, "..");
     if (!dots) {
-        bool good = cli_number(text, &range[0]);
+        if (!cli_number(text, &range[0]))
+            return false;
         range[1] = range[0];
-        return good;
+        return true;
     }
     char low[128];
     size_t length = (size_t)(dots - text);

@@ -220,7 +220,7 @@ static shape_set *read_all(const cli_common *common)
 /* Which clouds --cloud means; the caller frees the array. */
 static bool *select_clouds(const shape_set *set)
 {
-    bool *selected = malloc(set->cloud_count + 1);
+    bool *selected = calloc(set->cloud_count + 1, sizeof *selected);
     if (!selected)
         cli_fail("not enough memory");
     bool any = !values.cloud;

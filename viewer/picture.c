@@ -29,6 +29,7 @@ static shape_status read_part(shape_gl_renderer *renderer, shape_gl_part part, s
         return shape_error_memory(error);
     shape_status status = shape_gl_read(renderer, rgba, error);
     for (size_t y = 0; !status && y < height; y++) {
+        /* NOLINTNEXTLINE: the caller has made it, or has left with an error */
         size_t row = (size_t)image->height - (size_t)part.y - height + y;
         size_t to = row * (size_t)image->width + (size_t)part.x;
         for (size_t x = 0; x < width; x++, to++) {
