@@ -213,13 +213,13 @@ static void print_bench(const view_job *job, shape_gl_costs costs, double first_
     qsort(processor, (size_t)count, sizeof *processor, compare_doubles);
     int p95 = (int)ceil(0.95 * count) - 1;
     json_t *report = json_pack(
-        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:{s:f,s:f}, s:I, s:f, s:f, s:I, s:I, "
+        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:f, s:f, s:I, s:f, s:f, s:I, s:I, "
         "s:I, s:f}",
         "method", method_names[job->options.method], "size", job->view.width, job->view.height, "frames",
         count, "load_ms", job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms",
         costs.bake_ms, "first_picture_ms", first_ms, "frame_ms", "min", times[0], "median", times[count / 2],
-        "p95", times[p95], "max", count > 1 ? seen->slowest : times[0], "processor_ms", "min", processor[0],
-        "median", processor[count / 2], "primitives", (json_int_t)count_primitives(job->volume),
+        "p95", times[p95], "max", count > 1 ? seen->slowest : times[0], "processor_ms_min", processor[0],
+        "processor_ms_median", processor[count / 2], "primitives", (json_int_t)count_primitives(job->volume),
         "steps_per_pixel", costs.steps_per_pixel, "fetches_per_pixel", costs.fetches_per_pixel, "clouds_lit",
         (json_int_t)costs.lit_clouds, "clouds_baked", (json_int_t)costs.baked_clouds, "wrong_values",
         (json_int_t)seen->wrong, "largest_jump", seen->largest_jump);
