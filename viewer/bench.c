@@ -165,19 +165,19 @@ static void print_report(const view_job *job, const char *method, shape_gl_costs
     const double cpu_ms = 1e3 * (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
                           1e-3 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
     json_t *report = json_pack(
-        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:f, s:I, s:f, s:f, s:I, s:I, "
+        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:f, s:f, s:I, s:f, s:f, s:I, s:I, "
         "s:I, s:I, "
         "s:I, "
         "s:f, s:f, s:I}",
         "method", method, "size", job->view.width, job->view.height, "frames", count, "load_ms",
         job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms", costs.bake_ms,
         "first_picture_ms", run->first_ms, "frame_ms", "min", times[0], "median", times[count / 2], "p95",
-        times[p95], "max", slowest, "frame_cpu_ms", processor[count / 2], "primitives",
-        (json_int_t)count_primitives(job->volume), "steps_per_pixel", steps, "fetches_per_pixel", fetches,
-        "clouds_lit", (json_int_t)costs.lit_clouds, "clouds_baked", (json_int_t)costs.baked_clouds,
-        "light_bytes", (json_int_t)costs.light_bytes, "baked_bytes", (json_int_t)costs.baked_bytes,
-        "wrong_values", (json_int_t)run->wrong, "largest_jump", largest_jump, "cpu_ms", cpu_ms,
-        "memory_bytes", (json_int_t)used.ru_maxrss * 1024);
+        times[p95], "max", slowest, "processor_ms_min", processor[0], "processor_ms_median",
+        processor[count / 2], "primitives", (json_int_t)count_primitives(job->volume), "steps_per_pixel",
+        steps, "fetches_per_pixel", fetches, "clouds_lit", (json_int_t)costs.lit_clouds, "clouds_baked",
+        (json_int_t)costs.baked_clouds, "light_bytes", (json_int_t)costs.light_bytes, "baked_bytes",
+        (json_int_t)costs.baked_bytes, "wrong_values", (json_int_t)run->wrong, "largest_jump", largest_jump,
+        "cpu_ms", cpu_ms, "memory_bytes", (json_int_t)used.ru_maxrss * 1024);
     if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(6)) ||
         putchar('\n') == EOF)
         cli_fail("standard output: cannot write");

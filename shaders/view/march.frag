@@ -1,6 +1,6 @@
 // The view pass: the joined intervals of the supports, marched once, with the analytic field and exponential segments.
 #ifdef LISTED
-#define CANDIDATES 64
+#define CANDIDATES 96
 #endif
 #include "field/cloud.glsl"
 #include "field/noise.glsl"
