@@ -5,7 +5,7 @@
 # A jump is the root mean square of the difference of two pictures over their mean. The reference's is taken from two pairs of
 # pictures of different seeds, whose noise is not the same: the mean of the product of the two differences.
 # Exit 1: a frame beyond four times the median (only an idle machine can tell), a value that is no number, or a jump that is
-# larger than the reference's by more than a tenth and 0.02 (grain).
+# larger than the reference's by more than a tenth and 0.02.
 set -eu
 if [ $# -lt 2 ] || [ $# -gt 5 ]; then
     echo "usage: flight.sh PROGRAMS SOURCE [SIZE [FRAMES [SPP]]]" >&2
