@@ -5,6 +5,7 @@ set -eu
 bin=$1
 source=$2
 test=cli_window_scene
+screen_options=-noreset # what xprop says of the screen stays when a viewer has gone
 # shellcheck source=tests/window.sh
 . "$source/tests/window.sh"
 cc -shared -fPIC -O1 -o failing.so "$source/tests/failing_gl.c" -lepoxy || fail "the preloaded library does not build"

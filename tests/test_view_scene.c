@@ -57,8 +57,8 @@ static view_state *through_a_scene(const view_state *state, const shape_set *set
     shape_error error = {SHAPE_OK, ""};
     shape_scene *scene = shape_scene_create(&error), *read = NULL;
     shape_scene_cloud *entry;
-    char *text;
-    size_t size;
+    char *text = NULL;
+    size_t size = 0;
     assert_int_equal(shape_scene_add_cloud(scene, &entry, &error), SHAPE_OK);
     assert_int_equal(shape_scene_set_text(&entry->file, "two.neph", &error), SHAPE_OK);
     if (view_state_save(state, set, scene, &error) || shape_scene_encode(scene, &text, &size, &error) ||

@@ -285,9 +285,8 @@ void draw_light(const view_panel_input &in)
                   &start.course.day_runs, sizeof s.course.day_runs);
     turn_group(s.course.day_runs ? "Day" : "Sun", in, 0);
     ImGui::DragFloat3("irradiance", s.sun_irradiance, 0.02f, 0, 100, "%.3g", ImGuiSliderFlags_AlwaysClamp);
-    explain_value(
-        "of the sun, on a plane that faces it: red, green, blue, 0 to 100 (pi: a white surface is 1)",
-        s.sun_irradiance, start.sun_irradiance, sizeof s.sun_irradiance);
+    explain_value("of the sun, on a plane that faces it:\nred, green, blue, 0 to 100 (pi: white is 1)",
+                  s.sun_irradiance, start.sun_irradiance, sizeof s.sun_irradiance);
     int sky = static_cast<int>(s.sky);
     const int sky_start = static_cast<int>(start.sky);
     choose("sky", &sky, "none\0constant\0clear\0");
@@ -352,9 +351,9 @@ void draw_time(const view_panel_input &in, view_panel_wish &wish)
     double *wind = in.state->course.motion.wind, *drift = in.state->course.motion.drift;
     const shape_motion &start = in.base->course.motion;
     turn_vector("wind, m/s",
-                "carries the clouds with their noise: x (east), y (up), z (south), -1000 to 1000", wind,
+                "carries the clouds with their noise:\nx (east), y (up), z (south), -1000 to 1000", wind,
                 start.wind, 1000);
-    turn_vector("drift, m/s", "moves the noise through the clouds: x, y, z, -1000 to 1000", drift,
+    turn_vector("drift, m/s", "moves the noise through the clouds:\nx, y, z, -1000 to 1000", drift,
                 start.drift, 1000);
     wish.play = ImGui::SmallButton(in.playing ? "stop (Space)" : "play (Space)");
 }
