@@ -236,8 +236,8 @@ static void a_streak_is_as_dark_as_its_shadow_is_long(void **state)
     assert_true(1 - wanted > 0.01);
     assert_true(fabs(marched(&scene, &light, opaque, 1) - wanted) < share[0] * 2 / 24);
     assert_true(fabs(marched(&scene, &light, opaque, 200) - wanted) < 1e-4);
-    double got = traced(&scene, &light, opaque, 20000, &deviation);
-    assert_true(deviation < 5e-4 && fabs(got - wanted) < 4 * deviation);
+    double got = traced(&scene, &light, opaque, 1500, &deviation);
+    assert_true(deviation < 2e-3 && fabs(got - wanted) < 4 * deviation);
     shape_opaque_destroy(opaque);
     sample_end(&scene);
 }
@@ -258,8 +258,8 @@ static void air_and_cloud_share_the_way(void **state)
                     exp(-8 * a) * exp(-4 * (a + b));
     double got = marched(&scene, &light, NULL, 1);
     assert_true(fabs(got - wanted) < 1e-3); /* the trapezoid rule within steps of a hundredth of 4 m */
-    got = traced(&scene, &light, NULL, 20000, &deviation);
-    assert_true(deviation < 5e-3 && fabs(got - wanted) < 4 * deviation);
+    got = traced(&scene, &light, NULL, 1500, &deviation);
+    assert_true(deviation < 2e-2 && fabs(got - wanted) < 4 * deviation);
     sample_end(&scene);
 }
 

@@ -151,7 +151,8 @@ void gl_set_air(const shape_gl_renderer *r, GLuint program, shape_dvec3 eye)
     float mean[3];
     if (!gl_has_air(r))
         return;
-    shape_air_mean(&r->sky, mean);
+    for (int c = 0; c < 3; c++) /* shape_air_mean */
+        mean[c] = 0.5f * (r->sky_upper[c] + r->sky_lower[c]);
     set_ray(r, program, eye);
     gl_set_vector(program, "sun_irradiance", r->light.sun_irradiance);
     gl_set_vector(program, "air_sky_mean", mean);
