@@ -15,6 +15,7 @@
 
 uniform float step_scale;     // steps, in cells of the noise's first octave
 uniform float step_growth;    // steps grow with distance: metres a metre, about a pixel
+uniform float step_depth;     // optical depth up to which they do beyond a third of that
 uniform float step_deep;      // how much longer steps get where little shines through: 1 + step_deep at the end
 uniform float transmittance_end;
 
@@ -35,7 +36,8 @@ float reached; // all before it is done
 
 float step_length_of(float t, float deep)
 {
-    return max(step_scale * cloud_step, step_growth * t) * (1.0 + deep * (1.0 - transmittance));
+    float seen = step_growth * t, thin = step_depth / max(cloud_extinction, 1e-6);
+    return max(step_scale * cloud_step, min(seen, max(seen / 3.0, thin))) * (1.0 + deep * (1.0 - transmittance));
 }
 
 float step_length(float t) { return step_length_of(t, step_deep); }

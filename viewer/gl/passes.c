@@ -261,7 +261,7 @@ void gl_set_method(const shape_gl_renderer *r, const shape_view *view, GLuint pr
     double pixel = 2 * tan(view->fov * 3.14159265358979 / 360) / view->height;
     /* exact: cells of the noise; default: voxels. */
     gl_set_float(program, "step_scale", exact ? 0.4f : 1.5f);
-    gl_set_float(program, "step_deep", exact ? 3.0f : 0.0f);
+    gl_set_float(program, "step_deep", exact ? 1.0f : 0.0f);
     gl_set_int(program, "seed", (int)(uint32_t)(shape_hash(r->options.seed) ^ shape_hash(1)));
     gl_set_float(program, "window_length", r->window_length);
     gl_set_float(program, "step_depth", 0.25f);
