@@ -259,6 +259,7 @@ static void mistakes_have_their_place(void **state)
          "meshes[0]: there is no key \"keep-depth\""},
         {HEAD "\"lightning\": 1}", "the keys are scene, clouds, meshes, ground"},
         {HEAD "\"edits\": [{\"hidden\": true}]}", "edits[0]: names no cloud"},
+        {HEAD "\"edits\": [{\"cloud\": \"a\", \"hid\\nden\": 1}]}", "\"hid?den\""},
         {HEAD "\"edits\": [{\"cloud\": \"a\"}, {\"cloud\": \"a\"}]}",
          "edits[1]: the cloud \"a\" is edited already"},
         {HEAD "\"edits\": [{\"cloud\": \"a\", \"scale\": [1, 1, 1]}]}", "edits[0].scale: expected a number"},

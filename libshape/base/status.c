@@ -4,6 +4,14 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+/* Texts are one line: what a file brought into one, a line break in a name for instance, is shown as '?'. */
+static void keep_one_line(char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            *text = '?';
+}
+
 shape_status(shape_error_set)(shape_error *error, shape_status status, const char *format, ...)
 {
     if (error) {
@@ -12,6 +20,7 @@ shape_status(shape_error_set)(shape_error *error, shape_status status, const cha
         error->status = status;
         vsnprintf(error->text, sizeof error->text, format, arguments);
         va_end(arguments);
+        keep_one_line(error->text);
     }
     return status;
 }

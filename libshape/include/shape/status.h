@@ -31,7 +31,8 @@ typedef struct shape_error {
 #endif
 
 /* Fills *error (which may be NULL) with a printf-formatted line, and returns status, so that a caller can write
- * `return shape_error_set(error, SHAPE_ERROR_FORMAT, "...", ...)`. Too long a text is cut. */
+ * `return shape_error_set(error, SHAPE_ERROR_FORMAT, "...", ...)`. Too long a text is cut, and control
+ * characters in it (of a name that a file brought) are shown as '?'. */
 shape_status shape_error_set(shape_error *error, shape_status status, const char *format, ...)
     SHAPE_PRINTF(3, 4);
 
