@@ -39,6 +39,7 @@ tutorial/7 | step 7
 ! tutorial/blender | blend castle "--eye 0,0,60 --target 0,2.4,0 --fov 16 --sun 55,40 --sky 0.1,0.2,0.4 --size 320x160 --samples 96"
 ! viewer-methods | methods cumulus mesh
 ! chart | neph-chart -q --size 320x180 --runs 3 examples/scenes/bench/cumulus.json -o "$work/chart" && cp "$work/chart/chart.png" "$out"
+! series | neph-chart -q --appendix --size 160x90 --runs 3 examples/scenes/bench/cumulus.json -o "$work/series" && cp "$work/series/series.png" "$out"
 ! convergence | build/bench/tests/bench/bench_convergence >"$work/convergence.csv" && gnuplot -c docs/convergence.gp "$work/convergence.csv" "$out"
 ! vdb-cycles | cycles
 END
