@@ -93,6 +93,9 @@ static void every_knob_comes_back(void **state)
         const view_knob *knob = &view_knobs[i];
         int cloud = knob->of == VIEW_OF_STATE ? 0 : 1;
         s->course.day_runs = !strcmp(knob->group, "Day");
+        if (!strcmp(knob->group,
+                    "Air")) /* without air the panel does not show how it thins, nor a scene say it */
+            s->air.visibility = 500;
         double value = another(knob, view_knob_get(knob, s, cloud));
         view_knob_set(knob, s, cloud, value);
         view_state *back = through_a_scene(s, set);
