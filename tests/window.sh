@@ -74,8 +74,9 @@ find_window()
 # quit: by Esc; the viewer must end well
 quit()
 {
-    # The window is gone before the key is let go, which xdotool takes amiss.
+    # The window is gone before the key is let go, which xdotool takes amiss; a key that stays down would close the next one.
     key Escape 2>/dev/null || true
+    xdotool keyup Escape
     status=0
     wait "$viewer" || status=$?
     viewer=
@@ -91,7 +92,7 @@ shot()
         [ "$(date +%s)" -lt "$rest_end" ] || fail "the picture \"$1\" did not come to rest"
         sleep 0.1
     done
-    import -window "$window" "$1.png"
+    timeout 20 import -window "$window" "$1.png" || fail "no screenshot \"$1\" could be taken: $(cat viewer.log)"
 }
 # distance PART A B: root mean square difference within a part of the window, of 1
 distance()
