@@ -40,6 +40,7 @@ tutorial/7 | step 7
 ! viewer-methods | methods cumulus mesh
 ! chart | neph-chart -q --size 320x180 --runs 3 examples/scenes/bench/cumulus.json -o "$work/chart" && cp "$work/chart/chart.png" "$out"
 ! series | neph-chart -q --appendix --size 160x90 --runs 3 examples/scenes/bench/cumulus.json -o "$work/series" && cp "$work/series/series.png" "$out"
+! growth | sh tests/bench/run.sh build/bench/bin "$work/growth" && cp "$work/growth/growth.png" "$out"
 ! convergence | build/bench/tests/bench/bench_convergence >"$work/convergence.csv" && gnuplot -c docs/convergence.gp "$work/convergence.csv" "$out"
 ! vdb-cycles | cycles
 END

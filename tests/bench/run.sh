@@ -60,7 +60,19 @@ for n in $tens; do
     "options": {"field": 10, "area": [100, 100], "no-hollow": true, "no-prune": true, "seed": 5}}$behind],
  "sun": {"azimuth": 60, "height": 40}, "sky": "clear"}
 SCENE
-    one ten-in-sight "$n" default $((2 * frames)) "$work/ten$n.json" --size $size --eye 0,2,-80 --target 0,2,0 --fov 70
+done
+# They are compared to a few percent, so they take turns, and each one's best counts.
+rows=$csv
+csv=$work/turns
+: >"$csv"
+for _ in 1 2 3 4; do
+    for n in $tens; do
+        one ten-in-sight "$n" default $((4 * frames)) "$work/ten$n.json" --size $size --eye 0,2,-80 --target 0,2,0 --fov 70
+    done
+done >"$work/said"
+csv=$rows
+for n in $tens; do
+    grep "^ten-in-sight,default,$n," "$work/turns" | sort -t, -k4,4g | head -n 1 | tee -a "$csv"
 done
 for n in $clouds; do
     side=$(awk "BEGIN { print 32 * sqrt($n) }")
@@ -156,7 +168,7 @@ do for [chart in "distance pixels coverage primitives"] {
 }
 set title "clouds"
 set xlabel "clouds"
-set key bottom right
+set key top left
 k = through("clouds")
 plot rows("clouds", "default") using 3:(k * \$3) with lines dt 2 lc rgb grey title "linear", \
      rows("clouds", "default") using 3:4 with linespoints pt 7 lw 2 lc rgb blue title "all around: a frame", \
