@@ -23,9 +23,9 @@ shown()
     esac
 }
 
-help=$(sed -n '/rows\[\]\[2\]/,/};/p' "$source/viewer/panel.cpp" | sed -n 's/^ *{"\([^"]*\)".*/\1/p')
+help=$(sed -n '/rows\[\]\[2\]/,/};/p' "$source/viewer/panel_overlay.cpp" | sed -n 's/^ *{"\([^"]*\)".*/\1/p')
 table=$(sed -n 's/^| \([^|]*\) |.*/\1/p' "$source/docs/viewer.md")
-[ "$(echo "$help" | wc -l)" -gt 15 ] || fail "the help's rows are not found in viewer/panel.cpp"
+[ "$(echo "$help" | wc -l)" -gt 15 ] || fail "the help's rows are not found in viewer/panel_overlay.cpp"
 keys=$(grep -o 'GLFW_KEY_[A-Z0-9_]*' "$source/viewer/window_input.c" | sed 's/GLFW_KEY_//' | sort -u)
 [ "$(echo "$keys" | wc -l)" -gt 20 ] || fail "the keys are not found in viewer/window_input.c"
 # has TEXT KEY: whether the key stands in it as a word, alone or behind Ctrl+ and Shift+

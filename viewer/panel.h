@@ -1,4 +1,5 @@
-/* panel.cpp: what lies over the picture: the panel, the help, messages, wires. All of Dear ImGui is behind this header.
+/* panel.cpp, panel_overlay.cpp: what lies over the picture: the panel, the help, messages, wires. All of Dear ImGui is behind
+ * this header.
  * overlay.c: the wires. */
 #ifndef NEPHELE_VIEW_PANEL_H
 #define NEPHELE_VIEW_PANEL_H

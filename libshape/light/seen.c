@@ -78,11 +78,11 @@ void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud 
                     (float)e.y,
                 grid->box.min.z + size.z * ((float)(row / grid->size[1]) + 0.5f) / (float)grid->size[2] -
                     (float)e.z};
-            /* The direction in which one looks, in the cloud's frame and in the world. */
             /* A point lies beside the middle that it is interpolated from by the square root of a sixth of a cell, rms,
              * along each axis: two of them turn the direction, by a cosine of 1 - 1/6 over the distance's square, in cells;
              * nearly the same, with the limit 0 at the eye: */
             float away2 = shape_vec3_dot(v, v) / fmaxf(edge2, 1e-30f), same = away2 / (away2 + 1.0f / 6);
+            /* The direction in which one looks, in the cloud's frame and in the world. */
             v = shape_vec3_scale(v, 1 / fmaxf(shape_vec3_length(v), 1e-20f));
             shape_vec3 w = {(float)(m[0][0] * (double)v.x + m[0][1] * (double)v.y + m[0][2] * (double)v.z),
                             (float)(m[1][0] * (double)v.x + m[1][1] * (double)v.y + m[1][2] * (double)v.z),
