@@ -30,6 +30,10 @@
 #endif
 #endif
 
+#ifdef NEPHELE_COVERAGE
+extern "C" void __gcov_dump(void); // gcc: writes the counts, as an end of a program does
+#endif
+
 namespace
 {
 
@@ -132,6 +136,15 @@ bool send_grid(int to, const shape_grid &grid)
            send(to, grid.filled, grid.brick_count * sizeof *grid.filled);
 }
 
+// No destructors and nothing at exit: those are the other process's. Only what tests/coverage.sh counts is kept.
+[[noreturn]] void end_reader(bool sent)
+{
+#ifdef NEPHELE_COVERAGE
+    __gcov_dump();
+#endif
+    _exit(sent ? 0 : 1);
+}
+
 [[noreturn]] void be_the_reader(const char *path, size_t file_bytes, const shape_vdb_read_options &options,
                                 int to)
 {
@@ -145,7 +158,7 @@ bool send_grid(int to, const shape_grid &grid)
     static Message message; // zero
     load(path, options, message);
     if (message.error.status)
-        _exit(send(to, &message, sizeof message) ? 0 : 1);
+        end_reader(send(to, &message, sizeof message));
     const shape_grid &grid = *message.contents.grid;
     message.grid = grid;
     for (int c = 0; c < 3; c++)
@@ -154,7 +167,7 @@ bool send_grid(int to, const shape_grid &grid)
     bool sent = send(to, &message, sizeof message) && send_grid(to, grid);
     for (int c = 0; c < 3; c++)
         sent = sent && (!grid.colour[c] || send_grid(to, *grid.colour[c]));
-    _exit(sent ? 0 : 1);
+    end_reader(sent);
 }
 
 // --- this process ---
