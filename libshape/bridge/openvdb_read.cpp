@@ -51,17 +51,18 @@ struct Message {
 void limit_memory(size_t bytes)
 {
 #if !defined(VDB_SANITIZED)
-    unsigned long long pages = 0;
+    char text[64] = "";
     FILE *statm = std::fopen("/proc/self/statm", "r");
     if (!statm)
         return;
-    int read = std::fscanf(statm, "%llu", &pages);
+    bool read = std::fgets(text, sizeof text, statm);
     std::fclose(statm);
+    rlim_t pages = std::strtoull(text, nullptr, 10); // the first number
     const rlim_t spare = rlim_t(64) << 20;
     struct rlimit limit;
-    if (read != 1 || getrlimit(RLIMIT_AS, &limit))
+    if (!read || getrlimit(RLIMIT_AS, &limit))
         return;
-    rlim_t wanted = rlim_t(pages) * rlim_t(sysconf(_SC_PAGESIZE)) + bytes + spare;
+    rlim_t wanted = pages * rlim_t(sysconf(_SC_PAGESIZE)) + bytes + spare;
     if (wanted < limit.rlim_cur)
         limit.rlim_cur = wanted;
     setrlimit(RLIMIT_AS, &limit);
