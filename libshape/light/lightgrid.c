@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "field/row.h"
+#include "light/lightgrid_layout.h"
 #include "light/ordinates.h"
 #include "light/sunsweep.h"
 #include "shape/phase.h"
@@ -26,45 +27,6 @@ void shape_delta_scaling(float g, float *share, float *rest)
 {
     *share = g > 0 ? g * g : 0;
     *rest = g > 0 ? g / (1 + g) : g;
-}
-
-/* A grid of nearly cubic cells (flat ones for a thin layer) around the cloud's box and a cell more on every side, so that
- * its border is clear air. */
-void lightgrid_lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid)
-{
-    shape_box box = cloud->box;
-    if (shape_box_is_empty(box))
-        box = (shape_box){{0, 0, 0}, {1, 1, 1}};
-    const int fewest = resolution / 4;
-    float *min = &box.min.x, *max = &box.max.x, longest = 0, reach = 1e-30f;
-    for (int axis = 0; axis < 3; axis++) {
-        longest = fmaxf(longest, max[axis] - min[axis]);
-        reach = fmaxf(reach, fmaxf(fabsf(min[axis]), fabsf(max[axis])));
-    }
-    /* Far from its frame's origin a cloud is no thicker than a float's step; a cell must be. */
-    float cell = fmaxf(longest / (float)(resolution > 3 ? resolution - 2 : 1), reach * 1e-6f);
-    for (int axis = 0; axis < 3; axis++) {
-        int inner = (int)ceilf((max[axis] - min[axis]) / cell * 0.9999f);
-        float edge = cell;
-        if (cloud->field.model == SHAPE_MODEL_LAYER && inner < fewest) {
-            /* A layer is far wider than it is thick, and its light changes over its thickness. */
-            inner = fewest;
-            edge = fmaxf((max[axis] - min[axis]) / (float)fewest, reach * 1e-6f);
-        }
-        grid->size[axis] = (inner < 1 ? 1 : inner) + 2;
-        float middle = 0.5f * min[axis] + 0.5f * max[axis], half = 0.5f * edge * (float)grid->size[axis];
-        min[axis] = middle - half;
-        max[axis] = middle + half;
-    }
-    grid->box = box;
-}
-
-static shape_vec3 cell_point(const shape_lightgrid *grid, int x, int y, int z, float fx, float fy, float fz)
-{
-    shape_vec3 size = shape_vec3_sub(grid->box.max, grid->box.min);
-    return shape_vec3_make(grid->box.min.x + size.x * ((float)x + fx) / (float)grid->size[0],
-                           grid->box.min.y + size.y * ((float)y + fy) / (float)grid->size[1],
-                           grid->box.min.z + size.z * ((float)z + fz) / (float)grid->size[2]);
 }
 
 /* The step of the march to the sun: set by the finest noise of any cloud. */
@@ -98,7 +60,7 @@ static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y
     float *row = grid->cells + ((size_t)z * (size_t)grid->size[1] + (size_t)y) * (size_t)grid->size[0] *
                                    SHAPE_LIGHTGRID_VALUES;
     for (int x = 0; x < grid->size[0]; x++) {
-        shape_vec3 p = cell_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
+        shape_vec3 p = lightgrid_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
         shape_dvec3 world = shape_frame_point(&pass->cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
         double depth = (double)DEEPEST;
         shape_status status = SHAPE_OK;
@@ -150,8 +112,8 @@ static void fill_albedos(const shape_volume_cloud *cloud, const shape_lightgrid 
             for (int corner = 0; corner < 8; corner++) {
                 float rgb[3];
                 shape_vec3 p =
-                    cell_point(grid, x, i % grid->size[1], i / grid->size[1], corner & 1 ? 0.75f : 0.25f,
-                               corner & 2 ? 0.75f : 0.25f, corner & 4 ? 0.75f : 0.25f);
+                    lightgrid_point(grid, x, i % grid->size[1], i / grid->size[1], corner & 1 ? 0.75f : 0.25f,
+                                    corner & 2 ? 0.75f : 0.25f, corner & 4 ? 0.75f : 0.25f);
                 float density = shape_cloud_density(cloud, p);
                 shape_cloud_albedo(cloud, p, rgb);
                 sum += density;
@@ -197,12 +159,12 @@ static shape_status fill_extinction(const shape_volume_cloud *cloud, const shape
             int y = i % grid->size[1], z = i / grid->size[1];
             for (int x = 0; x < across; x++)
                 out[x] = 0;
-            if (own.status || row_collect(cloud, cell_point(grid, 0, y, z, 0, 0, 0),
-                                          cell_point(grid, across, y, z, 0, 1, 1), &list, &own))
+            if (own.status || row_collect(cloud, lightgrid_point(grid, 0, y, z, 0, 0, 0),
+                                          lightgrid_point(grid, across, y, z, 0, 1, 1), &list, &own))
                 continue;
             for (int corner = 0; corner < 4 && list.count; corner++) {
                 shape_vec3 low =
-                    cell_point(grid, 0, y, z, 0, corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f);
+                    lightgrid_point(grid, 0, y, z, 0, corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f);
                 field_row row = {0,
                                  2 * across,
                                  {low.x, low.y, low.z},
@@ -449,7 +411,7 @@ static void darken(const shape_volume_cloud *cloud, const shape_light *light, co
 #pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
     for (int i = 0; i < rows; i++)
         for (int x = 0; x < grid->size[0]; x++) {
-            shape_vec3 p = cell_point(grid, x, i % grid->size[1], i / grid->size[1], 0.5f, 0.5f, 0.5f);
+            shape_vec3 p = lightgrid_point(grid, x, i % grid->size[1], i / grid->size[1], 0.5f, 0.5f, 0.5f);
             shape_dvec3 world = shape_frame_point(&cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
             if (shape_opaque_blocks(opaque, world, light->sun, INFINITY))
                 grid->cells[((size_t)i * (size_t)grid->size[0] + (size_t)x) * SHAPE_LIGHTGRID_VALUES] =

@@ -10,6 +10,7 @@
 
 #include "field/clones.h"
 #include "field/row.h"
+#include "light/lightgrid_layout.h"
 #include "light/sunsweep.h"
 
 enum {

@@ -5,9 +5,6 @@
 #include "shape/lightgrid.h"
 #include "shape/sunsweep.h"
 
-/* The cells of a cloud's light grid: box and size, no memory (lightgrid.c). */
-void lightgrid_lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid);
-
 /* Clouds that may shade others, given as boxes seen from the sun: see shadowcast.c. */
 typedef struct shadow_pairs {
     size_t *first;   /* [clouds + 1]: where a cloud's casters begin in `casters` */
