@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "field/row.h"
+#include "light/lightgrid_density.h"
 #include "light/lightgrid_layout.h"
 #include "light/ordinates.h"
 #include "light/sunsweep.h"
@@ -52,6 +52,7 @@ typedef struct sun_pass {
     shape_dvec3 sun;
     float step;
     const shape_opaque *opaque;
+    shape_stop stop;
 } sun_pass;
 
 static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y, int z,
@@ -80,7 +81,7 @@ static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightg
     shape_status status = SHAPE_OK;
 #pragma omp parallel num_threads(threads)
     {
-        shape_candidates scratch = {0};
+        shape_candidates scratch = {.stop = pass->stop};
         shape_error own = {0};
 #pragma omp for schedule(dynamic, 4)
         for (int i = 0; i < rows; i++) {
@@ -121,70 +122,6 @@ static void fill_albedos(const shape_volume_cloud *cloud, const shape_lightgrid 
             }
             grid->albedos[(size_t)i * (size_t)grid->size[0] + (size_t)x] = sum > 0 ? scattered / sum : 0;
         }
-}
-
-/* Adds the densities of a row of half cells, for which the primitives are known. */
-static void add_half_row(const shape_volume_cloud *cloud, const row_forms *list, const field_row *row,
-                         float *extinction)
-{
-    enum { WHOLE = ROW_MOST / 2 };
-    float u2[ROW_MOST], density[ROW_MOST];
-    int cells = row->count / 2;
-    for (int begin = 0; begin < cells; begin += WHOLE) {
-        field_row part = *row;
-        part.low[0] += part.step * (float)(2 * begin);
-        part.count = 2 * (cells - begin < WHOLE ? cells - begin : WHOLE);
-        row_u2(list, cloud->support, &part, u2);
-        for (int i = 0; i < part.count && cloud->field.model == SHAPE_MODEL_GRID; i++)
-            u2[i] = 0;
-        row_density(cloud, &part, u2, density);
-        for (int i = 0; i < part.count / 2; i++)
-            extinction[begin + i] += density[2 * i] + density[2 * i + 1];
-    }
-}
-
-/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
-static shape_status fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
-                                    float *extinction, shape_error *error)
-{
-    int rows = grid->size[1] * grid->size[2], across = grid->size[0];
-    shape_status status = SHAPE_OK;
-#pragma omp parallel num_threads(threads)
-    {
-        row_forms list = {0};
-        shape_error own = {0};
-#pragma omp for schedule(dynamic, 4)
-        for (int i = 0; i < rows; i++) {
-            float *out = extinction + (size_t)i * (size_t)across;
-            int y = i % grid->size[1], z = i / grid->size[1];
-            for (int x = 0; x < across; x++)
-                out[x] = 0;
-            if (own.status || row_collect(cloud, lightgrid_point(grid, 0, y, z, 0, 0, 0),
-                                          lightgrid_point(grid, across, y, z, 0, 1, 1), &list, &own))
-                continue;
-            for (int corner = 0; corner < 4 && list.count; corner++) {
-                shape_vec3 low =
-                    lightgrid_point(grid, 0, y, z, 0, corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f);
-                field_row row = {0,
-                                 2 * across,
-                                 {low.x, low.y, low.z},
-                                 (grid->box.max.x - grid->box.min.x) / (float)(2 * across)};
-                add_half_row(cloud, &list, &row, out);
-            }
-            for (int x = 0; x < across; x++)
-                out[x] *= cloud->medium.extinction / 8;
-        }
-        free(list.items);
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
-    }
-    return status;
 }
 
 /* A grid of half as many cells a side: means of extinction and beam. */
@@ -329,9 +266,30 @@ static float scale_cell(const shape_lightgrid *grid, size_t cell, float albedo, 
     return thin > 0 ? albedo * (1 - peak) / thin : 0;
 }
 
-static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int channel,
-                            int finest, int threads, shape_lightgrid *grid, shape_error *error)
+/* The densities: from an earlier grid where there is one, which lies where this one lies. */
+static shape_status find_densities(const shape_volume_cloud *cloud, const shape_lightgrid_options *options,
+                                   int threads, shape_lightgrid *grid, shape_error *error)
 {
+    const shape_lightgrid *from = options->from;
+    const shape_change *change = NULL;
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    grid->densities = malloc(cells * sizeof *grid->densities);
+    if (!grid->densities)
+        return shape_error_memory(error);
+    if (from && from->densities && !(options->change && options->change->all)) {
+        static const shape_change none = {0};
+        change = options->change ? options->change : &none;
+        memcpy(grid->densities, from->densities, cells * sizeof *grid->densities);
+    }
+    return lightgrid_fill_densities(cloud, grid, change, threads, options->stop, error);
+}
+
+static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light,
+                            const shape_lightgrid_options *options, int threads, shape_lightgrid *grid,
+                            shape_error *error)
+{
+    const int channel = options->channel,
+              finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
     float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments), *shares = NULL;
@@ -344,8 +302,9 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     if (!status) {
         float peak, rest, albedo = 0;
         shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &peak, &rest);
-        status = fill_extinction(cloud, grid, threads, extinction, error);
-        if (!status && shares)
+        for (size_t i = 0; i < cells; i++)
+            extinction[i] = cloud->medium.extinction * grid->densities[i];
+        if (shares)
             fill_albedos(cloud, grid, channel, threads);
         for (size_t i = 0; i < cells && !status; i++) {
             albedo =
@@ -361,6 +320,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
                                .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
                                .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
                                .moments = moments,
+                               .stop = options->stop,
                                .visits = &grid->visits};
         for (int axis = 0; axis < 3; axis++) {
             p.size[axis] = grid->size[axis];
@@ -393,11 +353,11 @@ static shape_status find_depths(const shape_volume *volume, size_t cloud, const 
     if (!between.clouds)
         return shape_error_memory(error);
     for (size_t i = 0; i < volume->cloud_count; i++)
-        if (i == cloud || shadow_may_fall(&volume->clouds[i], &volume->clouds[cloud], light->sun))
+        if (i == cloud || shape_sun_may_shade(&volume->clouds[i], &volume->clouds[cloud], light->sun))
             between.clouds[count++] = volume->clouds[i];
     between.cloud_count = count;
-    sun_pass pass = {&between, &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
-                     options->opaque};
+    sun_pass pass = {&between,        &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
+                     options->opaque, options->stop};
     shape_status status = march_to_sun(&pass, threads, grid, error);
     free(between.clouds);
     return status;
@@ -442,6 +402,20 @@ static shape_status check(const shape_volume *volume, size_t cloud, const shape_
     return SHAPE_OK;
 }
 
+static bool lies_alike(const shape_lightgrid *a, const shape_lightgrid *b)
+{
+    return !memcmp(a->size, b->size, sizeof a->size) && !memcmp(&a->box, &b->box, sizeof a->box);
+}
+
+/* The scattered light of an earlier grid, as it was. */
+static void keep_scattered(const shape_lightgrid *from, shape_lightgrid *grid)
+{
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    for (size_t i = 0; i < cells; i++)
+        memcpy(grid->cells + i * SHAPE_LIGHTGRID_VALUES + 1, from->cells + i * SHAPE_LIGHTGRID_VALUES + 1,
+               (SHAPE_LIGHTGRID_VALUES - 1) * sizeof *grid->cells);
+}
+
 shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
                                    const shape_lightgrid_options *options, shape_lightgrid *grid,
                                    shape_error *error)
@@ -453,6 +427,9 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     int threads = options->threads > 0 ? options->threads : omp_get_max_threads();
     const shape_volume_cloud *c = &volume->clouds[cloud];
     lightgrid_lay_out(c, options->resolution, grid);
+    shape_lightgrid_options earlier = *options;
+    if (earlier.from && !lies_alike(earlier.from, grid))
+        earlier.from = NULL;
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
     if (!grid->cells)
@@ -464,9 +441,12 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     } else {
         status = find_depths(volume, cloud, light, options, threads, grid, error);
     }
-    int finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
+    if (!status && (options->scattering || (earlier.from && earlier.from->densities)))
+        status = find_densities(c, &earlier, threads, grid, error);
     if (!status && options->scattering)
-        status = scatter(c, light, options->channel, finest, threads, grid, error);
+        status = scatter(c, light, options, threads, grid, error);
+    else if (!status && earlier.from)
+        keep_scattered(earlier.from, grid);
     if (status)
         shape_lightgrid_free(grid);
     return status;
@@ -476,5 +456,6 @@ void shape_lightgrid_free(shape_lightgrid *grid)
 {
     free(grid->cells);
     free(grid->albedos);
+    free(grid->densities);
     memset(grid, 0, sizeof *grid);
 }

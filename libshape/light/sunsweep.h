@@ -15,9 +15,6 @@ typedef struct shadow_pairs {
 shape_status shadow_pairs_find(const shape_volume *volume, shape_dvec3 sun, shadow_pairs *pairs,
                                shape_error *error);
 void shadow_pairs_free(shadow_pairs *pairs);
-/* Whether a cloud may throw a shadow on another: by the balls around their boxes. */
-bool shadow_may_fall(const shape_volume_cloud *caster, const shape_volume_cloud *on, shape_dvec3 sun);
-
 /* Whether the sweep has this cloud's own sums. */
 bool sunsweep_has(const shape_sunsweep *sweep, size_t cloud);
 /* Writes the optical depth of each cell's middle into value 0 of the cells. */

@@ -103,10 +103,13 @@ bool shape_sphere_intersect(const shape_sphere *sphere, float support, shape_ray
 bool shape_ellipsoid_intersect(const shape_ellipsoid *ellipsoid, float support, shape_ray ray,
                                shape_candidate *hit);
 
-/* A growing list of candidates; zero it before first use, free it with shape_candidates_free. One a thread. */
+/* A growing list of candidates; zero it before first use, free it with shape_candidates_free. One a thread. stop may be set
+ * then: shape_cloud_candidates and shape_volume_optical_depth ask it. */
 typedef struct shape_candidates {
     shape_candidate *items;
     size_t count, capacity;
+    shape_stop stop;
+    size_t work; /* done since it was asked last */
 } shape_candidates;
 
 /* All supports that the ray meets within (t_min, t_max), sorted by entry; entries and exits are not clipped. The list
