@@ -329,6 +329,7 @@ static shape_lightgrid grid_of(const shape_volume *volume, const shape_light *li
     shape_lightgrid_options options = shape_lightgrid_defaults();
     options.resolution = resolution;
     options.sweep = sweep;
+    options.threads = 1;
     options.from = from;
     options.change = change;
     options.scattering = scattering;
@@ -359,7 +360,7 @@ static void lit_again_is_lit_anew(void **state)
             const shape_change *change = &p.change;
             shape_sunsweep *first = sweep_of(p.volumes[0], &light, SWEPT, 1, NULL, NULL);
             shape_lightgrid before = grid_of(p.volumes[0], &light, LIT, first, NULL, NULL, true);
-            shape_sunsweep *again = sweep_of(p.volumes[1], &light, SWEPT, 2, first, change),
+            shape_sunsweep *again = sweep_of(p.volumes[1], &light, SWEPT, round % 2 + 1, first, change),
                            *anew = sweep_of(p.volumes[1], &light, SWEPT, 1, NULL, NULL);
             if (round != BORDER_OUT)
                 assert_true(shape_sunsweep_rows(again) * 4 < shape_sunsweep_rows(anew) * 3);

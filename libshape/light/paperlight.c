@@ -55,6 +55,14 @@ static shape_status receive(const shape_volume *volume, shape_dvec3 point, shape
 shape_status shape_lightgrid_build_2018(const shape_volume *volume, size_t index, const shape_light *light,
                                         int resolution, float step, shape_lightgrid *grid, shape_error *error)
 {
+    return shape_lightgrid_build_2018_with(volume, index, light, resolution, step, (shape_stop){0}, grid,
+                                           error);
+}
+
+shape_status shape_lightgrid_build_2018_with(const shape_volume *volume, size_t index,
+                                             const shape_light *light, int resolution, float step,
+                                             shape_stop stop, shape_lightgrid *grid, shape_error *error)
+{
     memset(grid, 0, sizeof *grid);
     if (index >= volume->cloud_count || resolution < 2 || resolution > 256 || !(step > 0))
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
@@ -71,7 +79,7 @@ shape_status shape_lightgrid_build_2018(const shape_volume *volume, size_t index
     shape_status status = SHAPE_OK;
 #pragma omp parallel
     {
-        shape_candidates scratch = {0};
+        shape_candidates scratch = {.stop = stop};
         shape_error own = {0};
 #pragma omp for schedule(dynamic, 8)
         for (int row = 0; row < rows; row++)

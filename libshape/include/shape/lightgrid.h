@@ -65,6 +65,10 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
 shape_status shape_lightgrid_build_2018(const shape_volume *volume, size_t cloud, const shape_light *light,
                                         int resolution, float step, shape_lightgrid *grid,
                                         shape_error *error);
+/* The same, but it can be broken off. */
+shape_status shape_lightgrid_build_2018_with(const shape_volume *volume, size_t cloud,
+                                             const shape_light *light, int resolution, float step,
+                                             shape_stop stop, shape_lightgrid *grid, shape_error *error);
 void shape_lightgrid_free(shape_lightgrid *grid);
 
 /* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid
