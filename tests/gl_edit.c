@@ -2,6 +2,9 @@
  * end the picture is, to the bit, that of a renderer which never saw what was there before. */
 #include "gl_picture.h"
 
+#include <stdatomic.h>
+#include <time.h>
+
 #include "shape/change.h"
 
 enum { WIDTH = 160, HEIGHT = 90, VALUES = WIDTH * HEIGHT * 4 };
@@ -154,11 +157,65 @@ static void edits_in_quick_succession(void **state)
     shape_set_destroy(set);
 }
 
+/* --- breaking off --- */
+
+static double now_ms(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
+static bool says_stop(void *stop)
+{
+    return atomic_load((atomic_bool *)stop);
+}
+
+/* A crowd whose light and baking take seconds: broken off while a picture waits for it, and drawn when nobody minds
+ * any more; what the thread has begun then ends with the renderer. The bound is 20 ms of each of two threads (docs of
+ * shape_stop: a few milliseconds) and as much again for the driver. */
+static void crowds_are_left_at_once(void **state)
+{
+    (void)state;
+    enum { MOST_MS = 80 };
+    shape_error error;
+    shape_random random = shape_random_seed(4, 0);
+    shape_set *set = new_set();
+    new_cloud(set, SHAPE_MODEL_SPHEROID)->field.noise_scale = 0.3f;
+    add_random(set, 0, &random, 4000, 0, 0.05, 0.9, 1.1);
+    shape_volume *volume = new_volume(set);
+    shape_light light = shape_light_defaults();
+    shape_view view = view_of(WIDTH, HEIGHT, shape_dvec3_make(0, 0, 4), shape_dvec3_make(0, 0, 0), 40);
+    atomic_bool stop;
+    atomic_init(&stop, true);
+    shape_gl_options options = shape_gl_defaults();
+    options.light.resolution = 40;
+    options.background = true;
+    options.stop = (shape_stop){says_stop, &stop};
+    shape_gl_renderer *renderer;
+    must(shape_gl_create(&options, &renderer, &error), &error);
+    load(renderer, volume, &light);
+    double start = now_ms();
+    assert_int_equal(shape_gl_draw_moving(renderer, &view, &error), SHAPE_ERROR_STOPPED);
+    assert_true(now_ms() - start < MOST_MS);
+    atomic_store(&stop, false);
+    must(shape_gl_draw_moving(renderer, &view, &error), &error);
+    assert_true(shape_gl_pending(renderer));
+    start = now_ms();
+    load(renderer, volume, &light);
+    print_message("%.1f ms until the thread had ended and the volume was loaded again\n", now_ms() - start);
+    assert_true(now_ms() - start < MOST_MS);
+    shape_gl_destroy(renderer);
+    shape_volume_destroy(volume);
+    shape_set_destroy(set);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_edit_makes_what_it_changes),
         cmocka_unit_test(edits_in_quick_succession),
+        cmocka_unit_test(crowds_are_left_at_once),
     };
     return cmocka_run_group_tests(tests, open_context, close_context);
 }

@@ -188,6 +188,7 @@ shape_status shape_bake_with(const shape_volume_cloud *cloud, float voxel, int t
     if (status)
         return status;
     shape_volume_cloud coarse = with_fewer_octaves(cloud, voxel);
+    coarse.stop = &stop;
     const bricks_work work = {&coarse, baked, NULL, stop};
     status = fill_bricks(&work, threads, error);
     if (!status)
@@ -270,6 +271,7 @@ shape_status shape_bake_again(const shape_volume_cloud *cloud, const shape_chang
         flag_box(baked, change->boxes[i], flags);
     if (!status) {
         shape_volume_cloud coarse = with_fewer_octaves(cloud, baked->voxel);
+        coarse.stop = &stop;
         const bricks_work work = {&coarse, baked, flags, stop};
         status = fill_bricks(&work, threads, error);
     }

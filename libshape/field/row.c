@@ -251,6 +251,8 @@ void row_density(const shape_volume_cloud *cloud, row_forms *list, const field_r
 {
     const float limit = cloud->support * cloud->support;
     int first = 0, end = row->count;
+    if (stop_after(&list->watch, (size_t)row->count))
+        return;
     while (first < end && !(u2[first] <= limit))
         density[first++] = 0;
     while (end > first && !(u2[end - 1] <= limit))

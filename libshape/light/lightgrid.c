@@ -281,7 +281,9 @@ static shape_status find_densities(const shape_volume_cloud *cloud, const shape_
         change = options->change ? options->change : &none;
         memcpy(grid->densities, from->densities, cells * sizeof *grid->densities);
     }
-    return lightgrid_fill_densities(cloud, grid, change, threads, options->stop, error);
+    shape_volume_cloud copy = *cloud;
+    copy.stop = &options->stop;
+    return lightgrid_fill_densities(&copy, grid, change, threads, options->stop, error);
 }
 
 static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light,
@@ -353,8 +355,10 @@ static shape_status find_depths(const shape_volume *volume, size_t cloud, const 
     if (!between.clouds)
         return shape_error_memory(error);
     for (size_t i = 0; i < volume->cloud_count; i++)
-        if (i == cloud || shape_sun_may_shade(&volume->clouds[i], &volume->clouds[cloud], light->sun))
-            between.clouds[count++] = volume->clouds[i];
+        if (i == cloud || shape_sun_may_shade(&volume->clouds[i], &volume->clouds[cloud], light->sun)) {
+            between.clouds[count] = volume->clouds[i];
+            between.clouds[count++].stop = &options->stop;
+        }
     between.cloud_count = count;
     sun_pass pass = {&between,        &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
                      options->opaque, options->stop};
@@ -435,8 +439,8 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     if (!grid->cells)
         return shape_error_memory(error);
     if (options->sweep) {
-        sunsweep_fill(options->sweep, cloud, threads, grid);
-        if (options->opaque)
+        status = sunsweep_fill(options->sweep, cloud, threads, options->stop, grid, error);
+        if (!status && options->opaque)
             darken(c, light, options->opaque, threads, grid);
     } else {
         status = find_depths(volume, cloud, light, options, threads, grid, error);

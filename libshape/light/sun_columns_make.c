@@ -173,8 +173,9 @@ static void add_up(const sun_layout *c, int row, const float *density, float *re
 }
 
 /* As in shape/bake.h: no more octaves than the cells can show, the mean of the rest. */
-static shape_volume_cloud with_fewer_octaves(const shape_volume_cloud *cloud, const sun_layout *c)
+static shape_volume_cloud with_fewer_octaves(const sun_order *order, const sun_layout *c)
 {
+    const shape_volume_cloud *cloud = order->cloud;
     shape_volume_cloud copy = *cloud;
     float edge = fminf(c->cell[0], fminf(c->cell[1], c->cell[2])), noise = 1 / cloud->inverse_noise_scale;
     int octaves = 1;
@@ -182,6 +183,7 @@ static shape_volume_cloud with_fewer_octaves(const shape_volume_cloud *cloud, co
         noise /= 2;
     copy.mean_octaves = cloud->field.octaves - octaves;
     copy.field.octaves = octaves;
+    copy.stop = &order->stop;
     return copy;
 }
 
@@ -316,7 +318,7 @@ static shape_status make_new(const sun_order *order, const sun_layout *at, sun_c
     sun_columns *columns = create(at, order->keep);
     if (!columns)
         return shape_error_memory(error);
-    const shape_volume_cloud coarse = with_fewer_octaves(order->cloud, at);
+    const shape_volume_cloud coarse = with_fewer_octaves(order, at);
     const columns_work work = {.cloud = &coarse,
                                .columns = columns,
                                .density = columns->density ? columns->density : columns->depth,
@@ -349,7 +351,7 @@ static shape_status make_again(const sun_order *order, const sun_layout *at, sun
     if (!columns)
         return shape_error_memory(error);
     columns->at = *at;
-    const shape_volume_cloud coarse = with_fewer_octaves(order->cloud, at);
+    const shape_volume_cloud coarse = with_fewer_octaves(order, at);
     const columns_work work = {.cloud = &coarse,
                                .columns = columns,
                                .density = columns->density,

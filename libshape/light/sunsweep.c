@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/stop.h"
 #include "light/sun_columns.h"
 #include "light/sunsweep.h"
 
@@ -97,7 +98,8 @@ static void add_casters(const shape_sunsweep *s, size_t cloud, int z, shape_ligh
         *depth = *depth < MOST ? *depth : MOST;
 }
 
-void sunsweep_fill(const shape_sunsweep *s, size_t cloud, int threads, shape_lightgrid *grid)
+shape_status sunsweep_fill(const shape_sunsweep *s, size_t cloud, int threads, shape_stop stop,
+                           shape_lightgrid *grid, shape_error *error)
 {
     const sun_columns *own = s->columns[cloud];
     const bool same = sun_columns_same_grid(own, grid);
@@ -106,15 +108,21 @@ void sunsweep_fill(const shape_sunsweep *s, size_t cloud, int threads, shape_lig
                  cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     /* Its own grid is copied, a cell in a few nanoseconds; elsewhere each cell is looked up. */
     threads = cells * (casters + (same ? 0 : 1)) < 2 * LARGE ? 1 : threads;
-#pragma omp parallel num_threads(threads)
+    bool stopped = false;
+#pragma omp parallel num_threads(threads) reduction(|| : stopped)
     {
+        stop_watch watch = {.stop = stop};
 #pragma omp for schedule(static)
         for (int i = 0; i < parts; i++)
-            fill_part(own, same, i, grid);
+            if (!stop_now(&watch))
+                fill_part(own, same, i, grid);
 #pragma omp for schedule(static)
         for (int z = 0; z < grid->size[2]; z++)
-            add_casters(s, cloud, z, grid);
+            if (!stop_now(&watch))
+                add_casters(s, cloud, z, grid);
+        stopped = stopped || watch.stopped;
     }
+    return stopped ? stop_error(error) : SHAPE_OK;
 }
 
 /* --- all clouds --- */

@@ -18,6 +18,7 @@ void shadow_pairs_free(shadow_pairs *pairs);
 /* Whether the sweep has this cloud's own sums. */
 bool sunsweep_has(const shape_sunsweep *sweep, size_t cloud);
 /* Writes the optical depth of each cell's middle into value 0 of the cells. */
-void sunsweep_fill(const shape_sunsweep *sweep, size_t cloud, int threads, shape_lightgrid *grid);
+shape_status sunsweep_fill(const shape_sunsweep *sweep, size_t cloud, int threads, shape_stop stop,
+                           shape_lightgrid *grid, shape_error *error);
 
 #endif

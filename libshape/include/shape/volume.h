@@ -37,6 +37,9 @@ typedef struct shape_volume_cloud {
     float inverse_displace_scale, inverse_detail_scale, inverse_detail_depth;
     shape_vec3 inverse_cell; /* of a layer's noise, stretched */
     uint32_t keys[4];        /* see shape_noise_key */
+    const shape_stop
+        *stop; /* asked on long ways through the primitives of one point; where it is true, the density
+                                is of no use. For copies of a cloud that work can be broken off with; default NULL */
 } shape_volume_cloud;
 
 typedef struct shape_volume {
