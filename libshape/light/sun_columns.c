@@ -5,35 +5,79 @@
 
 #include "field/clones.h"
 #include "field/row.h"
+#include "light/lightgrid_layout.h"
+
+/* What points have in common that lie in a row along the columns' rows: between which rows of which layers. */
+typedef struct row_place {
+    float layer; /* from the sun */
+    const float *row
+        [2]; /* the nearer row of the layer before and of that after; NULL: above the first, where nothing is */
+    float y, z; /* how far towards the others */
+} row_place;
+
+/* False where there is nothing. */
+static bool find_row(const sun_columns *columns, shape_vec3 p, row_place *place)
+{
+    const sun_layout *c = &columns->at;
+    float layer = ((&p.x)[c->axis[2]] - c->low[2]) / c->cell[2] - 0.5f;
+    layer = c->upward ? (float)(c->size[2] - 1) - layer : layer;
+    if (!(layer > -1))
+        return false;
+    float row =
+        ((&p.x)[c->axis[1]] - c->low[1]) / c->cell[1] - 0.5f - c->shear[1] * layer - (float)c->first[1];
+    if (!(row >= 0 && row < (float)(c->count[1] - 1)))
+        return false;
+    float deep = layer < (float)(c->size[2] - 1) ? layer : (float)(c->size[2] - 1);
+    int j = (int)row, k = (int)(deep + 1) - 1; /* -1: above the first layer */
+    place->layer = layer;
+    place->y = row - (float)j;
+    place->z = deep - (float)k;
+    for (int half = 0; half < 2; half++) {
+        int number = k + half < c->size[2] ? k + half : c->size[2] - 1;
+        size_t start = ((size_t)number * (size_t)c->count[1] + (size_t)j) * (size_t)c->count[0];
+        place->row[half] = number < 0 ? NULL : columns->depth + start;
+    }
+    return true;
+}
+
+/* The depth at a place x along such a row [m]. */
+static inline float row_depth(const sun_layout *c, const row_place *place, float x)
+{
+    float at = (x - c->low[0]) / c->cell[0] - 0.5f - c->shear[0] * place->layer - (float)c->first[0];
+    float value[2] = {0, 0};
+    if (!(at >= 0 && at < (float)(c->count[0] - 1)))
+        return 0;
+    int i = (int)at;
+    float part = at - (float)i;
+    for (int half = 0; half < 2; half++) {
+        if (!place->row[half])
+            continue;
+        const float *near = place->row[half] + i, *far = near + c->count[0];
+        float a = near[0] + part * (near[1] - near[0]), b = far[0] + part * (far[1] - far[0]);
+        value[half] = a + place->y * (b - a);
+    }
+    return value[0] + place->z * (value[1] - value[0]);
+}
 
 float sun_columns_depth(const sun_columns *c, shape_vec3 p)
 {
-    float layer = ((&p.x)[c->at.axis[2]] - c->at.low[2]) / c->at.cell[2] - 0.5f, at[3];
-    layer = c->at.upward ? (float)(c->at.size[2] - 1) - layer : layer;
-    if (!(layer > -1))
-        return 0;
-    for (int side = 0; side < 2; side++) {
-        at[side] = ((&p.x)[c->at.axis[side]] - c->at.low[side]) / c->at.cell[side] - 0.5f -
-                   c->at.shear[side] * layer - (float)c->at.first[side];
-        if (!(at[side] >= 0 && at[side] < (float)(c->at.count[side] - 1)))
-            return 0;
+    row_place place;
+    return find_row(c, p, &place) ? row_depth(&c->at, &place, (&p.x)[c->at.axis[0]]) : 0;
+}
+
+void sun_columns_add_row(const sun_columns *c, const shape_lightgrid *grid, int row)
+{
+    float *cells = grid->cells + (size_t)row * (size_t)grid->size[0] * SHAPE_LIGHTGRID_VALUES;
+    shape_vec3 p = lightgrid_point(grid, 0, row % grid->size[1], row / grid->size[1], 0.5f, 0.5f, 0.5f);
+    const float low = grid->box.min.x, width = grid->box.max.x - low;
+    row_place place;
+    bool along = c->at.axis[0] == 0;
+    if (along && !find_row(c, p, &place))
+        return;
+    for (int i = 0; i < grid->size[0]; i++) {
+        p.x = low + width * ((float)i + 0.5f) / (float)grid->size[0];
+        cells[i * SHAPE_LIGHTGRID_VALUES] += along ? row_depth(&c->at, &place, p.x) : sun_columns_depth(c, p);
     }
-    at[2] = layer < (float)(c->at.size[2] - 1) ? layer : (float)(c->at.size[2] - 1);
-    int i = (int)at[0], j = (int)at[1],
-        k = (int)(at[2] + 1) - 1; /* -1: above the first layer, where nothing is */
-    float x = at[0] - (float)i, y = at[1] - (float)j, z = at[2] - (float)k, value[2] = {0, 0};
-    for (int half = 0; half < 2; half++) {
-        int number = k + half < c->at.size[2] ? k + half : c->at.size[2] - 1;
-        if (number < 0)
-            continue;
-        const float *near = c->depth +
-                            ((size_t)number * (size_t)c->at.count[1] + (size_t)j) * (size_t)c->at.count[0] +
-                            (size_t)i,
-                    *far = near + c->at.count[0];
-        float a = near[0] + x * (near[1] - near[0]), b = far[0] + x * (far[1] - far[0]);
-        value[half] = a + y * (b - a);
-    }
-    return value[0] + z * (value[1] - value[0]);
 }
 
 /* Cells of the grid that was swept lie on the layers, and a layer's columns lie a fixed part of a cell beside them. */

@@ -76,11 +76,10 @@ static void add_row(const sun_columns *c, const shape_frame *frame, int row, sha
  * that has the same z. */
 static void fill_part(const sun_columns *own, bool same, int part, shape_lightgrid *grid)
 {
-    const shape_frame identity = shape_frame_identity();
     if (same)
         sun_columns_fill_layer(own, part, grid);
     for (int y = 0; y < grid->size[1] && !same; y++)
-        add_row(own, &identity, part * grid->size[1] + y, grid);
+        sun_columns_add_row(own, grid, part * grid->size[1] + y);
 }
 
 /* The shadows of all others on the cells of one z, in their order. */
