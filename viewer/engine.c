@@ -16,7 +16,7 @@ static double now_ms(void)
 }
 
 shape_status view_scene_make(const view_state *state, view_shared *set, bool edited, const shape_morph *morph,
-                             view_scene **made, shape_error *error)
+                             const view_scene *before, view_scene **made, shape_error *error)
 {
     shape_set *placed;
     view_scene *scene = calloc(1, sizeof *scene);
@@ -37,6 +37,8 @@ shape_status view_scene_make(const view_state *state, view_shared *set, bool edi
         status =
             scene->placed ? shape_volume_create(placed, &scene->volume, error) : shape_error_memory(error);
     }
+    if (!status && before)
+        shape_volume_keep_boxes(scene->volume, before->volume);
     if (status)
         view_scene_drop(scene);
     else

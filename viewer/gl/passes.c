@@ -78,6 +78,8 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     if (!renderer)
         return;
     gl_refine_stop(renderer);
+    gl_update_free(&renderer->update);
+    gl_light_drop(renderer->earlier);
     gl_scene_free(&renderer->scene);
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);
@@ -173,10 +175,15 @@ static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *er
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
 {
     double start = now_ms();
+    bool stays = gl_update_begin(renderer, volume);
     gl_refine_stop(renderer);
-    gl_grids_drop(&renderer->grids);
+    gl_light_drop(renderer->earlier);
+    renderer->earlier = NULL;
     gl_grids_drop(&renderer->last_grids);
-    gl_pool_free(&renderer->pool);
+    if (!stays) {
+        gl_grids_drop(&renderer->grids);
+        gl_pool_free(&renderer->pool);
+    }
     renderer->fade_left = 0;
     renderer->volume = volume;
     renderer->window_length = window_length(volume);

@@ -39,6 +39,9 @@ typedef struct shape_gl_options {
     bool no_background; /* the sky lights the clouds and is not seen behind them */
     bool
         background; /* default method: draw at once by something coarse, and make the rest on a thread meanwhile */
+    /* Asked while something is made that a picture waits for; where it is true, drawing returns SHAPE_ERROR_STOPPED, and may be
+     * tried again. What is made meanwhile, on a thread, ends with the next load or the renderer. Default none. */
+    shape_stop stop;
     bool paper_lod; /* the paper's printed distance formula for its step, rather than 0.1 */
 } shape_gl_options;
 
@@ -52,6 +55,8 @@ typedef struct shape_gl_costs {
     double steps_per_pixel, fetches_per_pixel; /* of the last picture read by shape_gl_read */
     size_t lit_clouds,
         baked_clouds; /* how often a cloud's light was made, and its density baked, since the beginning */
+    size_t relit_clouds,
+        rebaked_clouds; /* how often only what an edit changed was made again of a cloud's light, and of its density */
     size_t light_bytes,
         baked_bytes; /* that were sent to the GPU, of light as seen and of baked density, since then */
 } shape_gl_costs;
@@ -61,8 +66,14 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
                              shape_error *error);
 void shape_gl_destroy(shape_gl_renderer *renderer); /* NULL is allowed */
 
-/* Uploads a volume; it must live until the next load or the end. */
+/* Uploads a volume; it must live until the next load has returned, or the end. With options.background the default method
+ * compares it with the one before, cloud by cloud: grids of clouds that have not changed stay, and where few primitives have,
+ * they are made again only there (shape/change.h), with the next picture; the scattered light follows, as does all that is
+ * made meanwhile. shape_volume_keep_boxes makes that likelier. */
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error);
+/* Whether, if this volume were loaded, the grids that are there would stay but for what an edit changed, so that the next
+ * picture would not have to wait for others. */
+bool shape_gl_stays(const shape_gl_renderer *renderer, const shape_volume *volume);
 /* Sets the light; needed after shape_gl_load. The light pass, on the CPU, is made before the next picture. */
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error);
 
