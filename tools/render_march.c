@@ -6,7 +6,8 @@
 static struct march_values {
     int rule, stepping, jitter, end, light, shadow;
     int64_t steps, light_steps, resolution, octaves;
-    double growth, pixels, powder, shade, forward, emission[3], ambient[3], lock, cutoff, alpha_power, alpha_peel;
+    double growth, pixels, powder, shade, forward, emission[3], ambient[3], lock, cutoff, alpha_power,
+        alpha_peel;
     bool silver;
     bool any_given, steps_given, growth_given, pixels_given, end_given, shadow_given, light_steps_given,
         resolution_given, powder_given, octaves_given, shade_given, forward_given;
@@ -80,7 +81,8 @@ bool render_march_given(void)
 {
     const struct march_values *v = &values;
     return v->any_given || v->steps_given || v->growth_given || v->pixels_given || v->end_given ||
-           v->shadow_given || v->light_steps_given || v->powder_given || v->octaves_given || v->shade_given || v->forward_given;
+           v->shadow_given || v->light_steps_given || v->powder_given || v->octaves_given || v->shade_given ||
+           v->forward_given;
 }
 
 bool render_march_resolution(int *cells)

@@ -121,7 +121,8 @@ static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
     if (m->has_lamp)
         add_lamp(ray, at, rgb);
     for (int c = 0; c < 3; c++)
-        rgb[c] = (grid ? rgb[c] : rgb[c] * (double)albedo[c]) + (double)albedo[c] * (double)m->options.ambient[c];
+        rgb[c] =
+            (grid ? rgb[c] : rgb[c] * (double)albedo[c]) + (double)albedo[c] * (double)m->options.ambient[c];
 }
 
 /* The square of u at a point of cloud i; above the support's where there is nothing. */

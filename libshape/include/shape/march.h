@@ -88,9 +88,10 @@ typedef struct shape_march_options {
     double shade; /* multiplies depths to the sun, 0 to 1 (sigma' of Páleník 2016 section 3.3); default 1 */
     double forward;    /* share of scattering that Harris' light keeps, 0 to 1; default 0.5 */
     float emission[3]; /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
-    float ambient[3];  /* radiance that reaches every point alike from all round, whatever lies between (001); default 0 */
-    bool silver;       /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
-    double lock;       /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
+    float ambient
+        [3]; /* radiance that reaches every point alike from all round, whatever lies between (001); default 0 */
+    bool silver; /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
+    double lock; /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
     /* A ray ends where less than this share of what is behind gets through, and a way to the sun through voxels where
      * less of the sun does; 1e-12 to 0.1; default 1e-8. */
     double cutoff;
