@@ -188,7 +188,8 @@ bool view_state_same_light(const view_state *a, const view_state *b)
     return x.sun.x == y.sun.x && x.sun.y == y.sun.y && x.sun.z == y.sun.z && x.sky == y.sky &&
            !memcmp(x.sun_irradiance, y.sun_irradiance, sizeof x.sun_irradiance) &&
            !memcmp(x.sky_radiance, y.sky_radiance, sizeof x.sky_radiance) &&
-           x.air.visibility == y.air.visibility && x.air.height == y.air.height;
+           x.air.visibility == y.air.visibility && x.air.height == y.air.height &&
+           !memcmp(&a->lighting, &b->lighting, sizeof a->lighting);
 }
 
 /* --- undo --- */
