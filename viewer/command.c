@@ -48,7 +48,8 @@ static void add_knobs(text_end *end, const view_state *state, const view_state *
 {
     for (size_t i = 0; i < view_knob_count; i++) {
         const view_knob *knob = &view_knobs[i];
-        if (!knob->option || !strcmp(knob->group, "Air") || !strcmp(knob->group, "Light") || (knob->of != VIEW_OF_STATE) != of_cloud)
+        if (!knob->option || !strcmp(knob->group, "Air") || !strcmp(knob->group, "Light") ||
+            (knob->of != VIEW_OF_STATE) != of_cloud)
             continue;
         bool day = !strcmp(knob->group, "Day");
         if (day && !state->course.day_runs)
@@ -115,7 +116,7 @@ static void add_settings(text_end *end, const view_generator *g)
 static bool add_maker(text_end *end, const view_state *state, const view_state *base, const char *path)
 {
     const view_generator *g = &state->generator;
-    bool piped = false, made = g->which >= 0;
+    bool piped = false, made = g->which >= 0 && !g->entry; /* a scene makes its own */
     if (made) {
         add(end, "%s", view_generator_program(g));
         if (path[0])

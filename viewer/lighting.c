@@ -48,9 +48,8 @@ void view_lighting_check(const view_lighting *lighting, int method)
 
 shape_gl_lighting view_lighting_gl(const view_lighting *lighting)
 {
-    shape_gl_lighting gl = {.law = (shape_gl_law)lighting->law,
-                            .powder = (float)lighting->powder,
-                            .octaves = lighting->octaves};
+    shape_gl_lighting gl = {
+        .law = (shape_gl_law)lighting->law, .powder = (float)lighting->powder, .octaves = lighting->octaves};
     for (int c = 0; c < 3; c++) {
         gl.ambient[c] = (float)lighting->ambient[c];
         gl.emission[c] = (float)lighting->emission[c];

@@ -182,17 +182,20 @@ void draw_setting(const view_panel_input &in, const view_setting_row &row, int i
     bool reset = ImGui::IsItemClicked(ImGuiMouseButton_Right);
     if (!was)
         ImGui::PopStyleColor();
+    const bool scene = in.base->generator.entry > 0; // there the file may give some
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("--%s: %s\nCtrl+click to type, right click to leave it to the generator", row.name,
-                          row.help);
-    if (!setting.given)
+        ImGui::SetTooltip("--%s: %s\nCtrl+click to type, right click to %s", row.name, row.help,
+                          scene ? "reset" : "leave it to the generator");
+    if (scene
+            ? setting.given == start.given && !std::memcmp(setting.number, start.number, sizeof start.number)
+            : !setting.given)
         return;
     ImGui::SameLine();
     ImGui::PushID(row.name);
     reset = ImGui::SmallButton("x") || reset;
     ImGui::PopID();
     if (reset)
-        setting = view_setting{false, {start.number[0], start.number[1], start.number[2]}};
+        setting = view_setting{scene && start.given, {start.number[0], start.number[1], start.number[2]}};
 }
 
 void draw_generator(const view_panel_input &in)
@@ -204,6 +207,8 @@ void draw_generator(const view_panel_input &in)
         return;
     if (!in.watched)
         ImGui::TextDisabled("not made again: standard input, or a morph");
+    if (g.entry)
+        ImGui::TextDisabled("makes cloud entry %d of the scene", g.entry);
     for (int i = 0; view_setting_get_row(&g, i, &row); i++)
         draw_setting(in, row, i);
     static const uint64_t one = 1;
@@ -315,7 +320,8 @@ void draw_lighting(const view_panel_input &in)
         if (!std::strcmp(view_knobs[i].group, "Light") && (octaves ? l.law == SHAPE_GL_LAW_OCTAVES : powder))
             turn_knob(view_knobs[i], in, 0);
     }
-    turn_vector("ambient", "radiance that reaches every point alike from all round:\nred, green, blue, 0 to 10",
+    turn_vector("ambient",
+                "radiance that reaches every point alike from all round:\nred, green, blue, 0 to 10",
                 l.ambient, start.ambient, 0, 10);
     turn_vector("emission, 1/m", "of density 1, radiance a metre:\nred, green, blue, 0 to 10", l.emission,
                 start.emission, 0, 10);

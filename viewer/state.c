@@ -65,6 +65,9 @@ void view_state_merge(view_state *state, const view_state *base, const view_stat
         memcpy(own.origin, n->origin, sizeof own.origin);
         memcpy(c, &own, sizeof own);
     }
+    /* A scene's entry that says something else than before. */
+    if (state->generator.entry != next->generator.entry || state->generator.digest != next->generator.digest)
+        memcpy(&state->generator, &next->generator, sizeof state->generator);
     for (int i = 0; i < VIEW_SETTINGS_MAX; i++)
         if (!state->generator.settings[i].given && !next->generator.settings[i].given) /* the file's own */
             state->generator.settings[i] = next->generator.settings[i];
