@@ -35,7 +35,7 @@ typedef struct chart_setting {
     chart_method method;
     shape_rule rule;
     int steps; /* along the longest side of all clouds */
-    shape_march_light light;
+    shape_march_light light; /* of CHART_GL and CHART_GL_EXACT: single, powder, octaves or grid */
     shape_march_shadow shadow;
     shape_march_jitter jitter;
     int cells;   /* of the light grid's longest side */

@@ -177,6 +177,7 @@ struct gl_light {
     float *cells; /* scratch, as large as the atlas */
     float *shade; /* the sun's share that clouds let through, for what is opaque; NULL where nothing is */
     GLuint a, b, seen, shade_texture;
+    GLuint depth; /* to the sun, of the laws of law.c */
 };
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
@@ -188,6 +189,8 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
 /* Composes the light of the shown clouds for an eye and uploads it. */
 shape_status gl_light_compose(gl_light *light, shape_gl_renderer *renderer, shape_dvec3 eye,
                               shape_error *error);
+/* Uploads the cells' depths to the sun, once. */
+void gl_light_upload_depths(gl_light *light, shape_gl_renderer *renderer);
 /* Of the clouds that the view sees, its pyramid made `wider` times as wide and high, the worst. */
 gl_fit gl_light_fit(const gl_light *light, const gl_order *order, double wider);
 void gl_light_drop(gl_light *light); /* NULL is allowed */
@@ -328,7 +331,7 @@ struct shape_gl_renderer {
     gl_preview preview;
     gl_surface surface;
     gl_air air;
-    bool with_air; /* what the programs were made for */
+    int made_for; /* the programs, see gl_make_programs */
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
@@ -363,6 +366,22 @@ void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GL
 shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
                          shape_error *error);
 
+/* Makes the programs anew where they are for other air, or another law of light. */
+shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error);
+
+/* --- law.c: by what points are lit --- */
+
+shape_gl_law gl_law(const shape_gl_renderer *renderer);
+/* Whether the sky lights anything by it. */
+bool gl_law_has_sky(shape_gl_law law);
+/* Adds the line by which shaders are made for it, or nothing. */
+void gl_law_define(const shape_gl_renderer *renderer, char *defines, size_t size);
+/* Ambient light and emission: added to a cloud's cells as the eye sees them; and put into all clouds' records. */
+void gl_law_glow(const shape_gl_renderer *renderer, const shape_medium *medium, size_t cells, float *rgba);
+void gl_law_place(const shape_gl_renderer *renderer, gl_scene *scene);
+/* Tells a marching program of it; after gl_set_grids. The program is in use. */
+void gl_set_law(const shape_gl_renderer *renderer, const gl_grids *grids, GLuint program);
+
 /* --- refine.c --- */
 
 /* Before a picture: makes what it needs, or, in the background, something coarse, with the rest to come. */
@@ -389,8 +408,8 @@ void gl_air_free(gl_air *air);
 
 /* --- preview.c: the default method --- */
 
-/* defines: of all programs, "" or "#define AIR\n". Makes them anew where they are there. */
-shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines,
+/* defines: of all programs. Makes them anew where they are there; marching: those alone that light comes into. */
+shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines, bool marching,
                                shape_error *error);
 shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
 void gl_preview_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame);

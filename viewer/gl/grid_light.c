@@ -48,6 +48,7 @@ void gl_light_drop(gl_light *light)
     glDeleteTextures(1, &light->b);
     glDeleteTextures(1, &light->seen);
     glDeleteTextures(1, &light->shade_texture);
+    glDeleteTextures(1, &light->depth);
     free(light->lit);
     free(light->boxes);
     free(light->cells);
@@ -355,15 +356,15 @@ shape_status gl_light_join(const gl_light *first, const gl_light *second, int te
     return SHAPE_OK;
 }
 
-/* Values 0..3 (part 0) or 4..7 (part 1) of all grids as one texture. */
-static GLuint value_texture(gl_light *light, int part)
+/* `values` of each cell, from value `first` on, of all grids as one texture. */
+static GLuint value_texture(gl_light *light, int first, size_t values)
 {
     memset(light->cells, 0, cell_count(light->size) * 4 * sizeof *light->cells);
     for (int i = 0; i < light->count; i++) {
         const gl_box *box = &light->boxes[i];
         if (!light->lit[i])
             continue;
-        const float *from = light->lit[i]->grid.cells + 4 * part;
+        const float *from = light->lit[i]->grid.cells + first;
         for (int z = 0; z < box->size[2]; z++)
             for (int y = 0; y < box->size[1]; y++) {
                 float *to =
@@ -371,18 +372,27 @@ static GLuint value_texture(gl_light *light, int part)
                     (((size_t)(box->place[2] + z) * (size_t)light->size[1] + (size_t)(box->place[1] + y)) *
                          (size_t)light->size[0] +
                      (size_t)box->place[0]) *
-                        4;
-                for (int x = 0; x < box->size[0]; x++, from += SHAPE_LIGHTGRID_VALUES)
-                    memcpy(to + 4 * x, from, 4 * sizeof *to);
+                        values;
+                for (size_t x = 0; x < (size_t)box->size[0]; x++, from += SHAPE_LIGHTGRID_VALUES)
+                    memcpy(to + values * x, from, values * sizeof *to);
             }
     }
-    return gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, light->cells);
+    return values == 1 ? gl_volume_texture(light->size, GL_R32F, GL_RED, GL_FLOAT, light->cells)
+                       : gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, light->cells);
 }
 
 void gl_light_upload(gl_light *light)
 {
-    light->a = value_texture(light, 0);
-    light->b = value_texture(light, 1);
+    light->a = value_texture(light, 0, 4);
+    light->b = value_texture(light, 4, 4);
+}
+
+void gl_light_upload_depths(gl_light *light, shape_gl_renderer *renderer)
+{
+    if (light->depth)
+        return;
+    light->depth = value_texture(light, 0, 1);
+    renderer->costs.light_bytes += cell_count(light->size) * sizeof *light->cells;
 }
 
 void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *volume)
@@ -398,9 +408,11 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
 static void compose_one(const gl_light *light, const shape_gl_renderer *r, shape_dvec3 eye, int cloud,
                         float *to)
 {
-    if (light->lit[cloud])
-        shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light, r->sky_upper,
-                             r->sky_lower, eye, to);
+    if (!light->lit[cloud])
+        return;
+    shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light, r->sky_upper,
+                         r->sky_lower, eye, to);
+    gl_law_glow(r, &r->volume->clouds[cloud].medium, cell_count(light->boxes[cloud].size), to);
 }
 
 /* Where each shown cloud's cells begin in the scratch, which is as large as all of them together. */

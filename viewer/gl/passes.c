@@ -19,6 +19,8 @@ shape_gl_options shape_gl_defaults(void)
 {
     shape_gl_options options = {
         .method = SHAPE_GL_DEFAULT, .light = shape_lightgrid_defaults(), .bake_voxels = 12000000, .seed = 1};
+    options.lighting.powder = 2;
+    options.lighting.octaves = 8;
     return options;
 }
 
@@ -51,7 +53,7 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     static const char whole[] = "view/fullscreen.vert";
     shape_status status = SHAPE_OK;
     if (options->method == SHAPE_GL_DEFAULT)
-        status = gl_preview_create(&made->preview, folder, "", error);
+        status = gl_make_programs(made, error);
     if (!status)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
@@ -125,8 +127,10 @@ static bool is_plain(const shape_volume *volume)
 }
 
 /* What the shaders of the whole picture may leave out for a volume: a number for each such set of lines. */
-static int view_defines(const shape_volume *volume, bool air, char *defines, size_t size)
+static int view_defines(const shape_gl_renderer *renderer, char *defines, size_t size)
 {
+    const shape_volume *volume = renderer->volume;
+    bool air = gl_has_air(renderer);
     const shape_volume_cloud *c = volume->cloud_count == 1 ? &volume->clouds[0] : NULL;
     bool plain = is_plain(volume), spheres = c && !c->list->ellipsoid_count;
     int octaves = c ? c->field.octaves : 0;
@@ -134,7 +138,8 @@ static int view_defines(const shape_volume *volume, bool air, char *defines, siz
              spheres ? "#define SPHERES_ONLY\n" : "", air ? "#define AIR\n" : "");
     if (c)
         snprintf(defines + strlen(defines), size - strlen(defines), "#define OCTAVES %d\n", octaves);
-    return 1 + plain + 2 * spheres + 4 * air + 8 * octaves;
+    gl_law_define(renderer, defines, size);
+    return 1 + plain + 2 * spheres + 4 * air + 8 * octaves + 1024 * (int)gl_law(renderer);
 }
 
 /* The view program of the methods that have one for the whole picture, as fits the volume; listed: the one that reads
@@ -144,7 +149,7 @@ static shape_status find_program(shape_gl_renderer *renderer, bool listed, GLuin
 {
     enum { ROOM = 160 };
     char defines[ROOM];
-    int kind = view_defines(renderer->volume, gl_has_air(renderer), defines, ROOM);
+    int kind = view_defines(renderer, defines, ROOM);
     GLuint *known = &renderer->view_programs[listed];
     if (renderer->view_kinds[listed] != kind) {
         glDeleteProgram(*known);
@@ -203,17 +208,26 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     return status;
 }
 
-/* Programs with air, or without. */
-static shape_status change_air(shape_gl_renderer *renderer, shape_error *error)
+shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error)
 {
+    char defines[64];
     bool air = gl_has_air(renderer);
-    if (air == renderer->with_air)
+    int wanted = 2 + air + 2 * (int)gl_law(renderer), made_for = renderer->made_for;
+    if (wanted == made_for)
         return SHAPE_OK;
-    renderer->with_air = air;
-    if (renderer->options.method != SHAPE_GL_DEFAULT)
-        return prepare_program(renderer, error);
-    return gl_preview_create(&renderer->preview, renderer->options.shader_folder, air ? "#define AIR\n" : "",
-                             error);
+    renderer->made_for = 0;
+    shape_status status = SHAPE_OK;
+    if (renderer->options.method == SHAPE_GL_DEFAULT) {
+        snprintf(defines, sizeof defines, "%s", air ? "#define AIR\n" : "");
+        gl_law_define(renderer, defines, sizeof defines);
+        status = gl_preview_create(&renderer->preview, renderer->options.shader_folder, defines,
+                                   made_for && made_for % 2 == wanted % 2, error);
+    } else if (renderer->volume) {
+        status = prepare_program(renderer, error);
+    }
+    if (!status)
+        renderer->made_for = wanted;
+    return status;
 }
 
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
@@ -225,7 +239,7 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
-    return change_air(renderer, error);
+    return gl_make_programs(renderer, error);
 }
 
 int shape_gl_largest(void)
@@ -309,6 +323,7 @@ shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, boo
     glViewport(0, 0, frame->part->width, frame->part->height);
     gl_set_scene(&renderer->scene, program);
     gl_set_grids(&renderer->grids, program);
+    gl_set_law(renderer, &renderer->grids, program);
     gl_set_tiles(frame->tiles, program);
     gl_set_light(renderer, program);
     gl_set_camera(frame, program);
@@ -343,9 +358,13 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
     gl_light_place(grids->light, &renderer->scene, renderer->volume);
     if (grids->baked)
         gl_baked_place(grids->baked, &renderer->scene);
+    if (gl_law(renderer) != SHAPE_GL_LAW_GRID) {
+        gl_light_upload_depths(grids->light, renderer);
+        gl_law_place(renderer, &renderer->scene);
+    }
     gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
     shape_status status = SHAPE_OK;
-    if (frame->sample == 0 && !is_paper(renderer))
+    if (frame->sample == 0 && !is_paper(renderer) && gl_law(renderer) == SHAPE_GL_LAW_GRID)
         status = gl_light_compose(grids->light, renderer, frame->camera->origin, error);
     if (status)
         return status;

@@ -10,19 +10,22 @@ enum { SKY_SPACING = 8 }; /* as in shaders/view/sky_picture.glsl */
 /* How far a pixel's neighbours may differ, in transmittance or relative brightness, for it to be their mean. */
 static const float AGREEMENT = 0.1f;
 
-shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines,
+shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines, bool marching,
                                shape_error *error)
 {
     const struct {
         const char *vertex, *fragment;
         GLuint *program;
-    } programs[] = {{"view/tile.vert", "view/preview_sky.frag", &preview->sky},
-                    {"view/tile.vert", "view/preview_one.frag", &preview->one},
-                    {"view/tile.vert", "view/preview.frag", &preview->several},
-                    {"view/fullscreen.vert", "view/preview_fill.frag", &preview->fill},
-                    {"view/fullscreen.vert", "view/sky.frag", &preview->sky_picture_program}};
+        bool marches;
+    } programs[] = {{"view/tile.vert", "view/preview_sky.frag", &preview->sky, false},
+                    {"view/tile.vert", "view/preview_one.frag", &preview->one, true},
+                    {"view/tile.vert", "view/preview.frag", &preview->several, true},
+                    {"view/fullscreen.vert", "view/preview_fill.frag", &preview->fill, false},
+                    {"view/fullscreen.vert", "view/sky.frag", &preview->sky_picture_program, false}};
     shape_status status = SHAPE_OK;
     for (size_t i = 0; i < sizeof programs / sizeof *programs && !status; i++) {
+        if (marching && !programs[i].marches)
+            continue;
         glDeleteProgram(*programs[i].program);
         *programs[i].program = 0;
         status = gl_program_create(folder, programs[i].vertex, programs[i].fragment, defines,
@@ -81,6 +84,7 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     glUseProgram(program);
     gl_set_scene(&r->scene, program);
     gl_set_grids(pass->grids, program);
+    gl_set_law(r, pass->grids, program);
     gl_set_tiles(pass->frame->tiles, program);
     gl_set_camera(pass->frame, program);
     gl_set_method(r, pass->frame->view, program);

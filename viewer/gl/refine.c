@@ -268,10 +268,12 @@ static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
 {
     GLint largest = 256;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    shape_lightgrid_options light_options = r->options.light;
+    light_options.scattering = light_options.scattering && gl_law(r) == SHAPE_GL_LAW_GRID;
     return (gl_order){.volume = r->volume,
                       .light = &r->light,
                       .paper = r->options.method == SHAPE_GL_PAPER || r->options.method == SHAPE_GL_PAPER_NDT,
-                      .light_options = r->options.light,
+                      .light_options = light_options,
                       .all_clouds = r->options.light.opaque || gl_has_air(r),
                       .view = *view,
                       .bake_voxels = r->options.bake_voxels,
