@@ -98,9 +98,15 @@ static void publish(view_watch *watch, view_news *news)
 
 /* --- which files --- */
 
+bool view_watch_can(const char *path)
+{
+    struct stat status;
+    return path[0] && strcmp(path, "-") && (stat(path, &status) || S_ISREG(status.st_mode));
+}
+
 static bool is_file(const view_watch *watch)
 {
-    return watch->path[0] && strcmp(watch->path, "-");
+    return view_watch_can(watch->path);
 }
 
 /* The number of a file's folder; -1 where nothing tells of it. */

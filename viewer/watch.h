@@ -16,6 +16,8 @@ typedef struct view_news {
 
 enum { VIEW_FILES_MAX = 256 }; /* watched at once; of a scene that names more, the first */
 
+/* Whether a path is one of a file that can be read again: no pipe, and no standard input. */
+bool view_watch_can(const char *path);
 /* Begins to watch the file, those that it names where it is a scene, and those of `more`, which outlives the watch; NULL. `wake` is called from the thread when there is news. Standard input ("-") is read once and not
  * watched; nor is "", which stands for a generator without a file. NULL and *error: threads or memory are out. */
 view_watch *view_watch_start(const char *path, const view_generator *generator, const view_more_things *more,
