@@ -10,9 +10,13 @@ typedef struct view_watch view_watch;
 typedef struct view_news {
     view_contents contents; /* contents.set is NULL where the file had mistakes; the caller frees it */
     char text[4096];        /* the mistakes, one a line; empty where there are none */
-    double saved;           /* CLOCK_MONOTONIC when the file was found to be saved [ms] */
+    double saved;           /* CLOCK_MONOTONIC when the file was written last, or put in its place [ms] */
+    double work;            /* of all processors for this process, when that was found [ms] */
     double milliseconds;    /* that the reading took */
 } view_news;
+
+/* What all threads of this process have had of the processors so far [ms]. */
+double view_work_ms(void);
 
 enum { VIEW_FILES_MAX = 256 }; /* watched at once; of a scene that names more, the first */
 

@@ -157,16 +157,21 @@ static void look_at_picture(window_state *w)
             w->times[i][VIEW_TIMES - 1] = (float)ms[i];
         }
     }
-    if (w->saved_ms > 0 && picture.request >= w->reload_ask) {
-        char text[128];
-        snprintf(text, sizeof text, "read again, shown after %.0f ms", now_ms() - w->saved_ms);
-        cli_say("%s: %s", w->job->title, text);
-        window_say(w, text);
-        w->saved_ms = 0;
-    }
     if (strcmp(picture.text, w->picture.text) && !picture.text_is_error)
         window_say(w, picture.text);
     w->picture = picture;
+}
+
+/* The frame that has been presented is the first with a file that was saved. */
+static void tell_reload(window_state *w)
+{
+    char text[128];
+    if (!(w->saved_ms > 0) || w->picture.request < w->reload_ask)
+        return;
+    snprintf(text, sizeof text, "read again, shown after %.0f ms", now_ms() - w->saved_ms);
+    window_say(w, text);
+    cli_say("%s: %s (%.0f ms of the processors)", w->job->title, text, view_work_ms() - w->saved_work);
+    w->saved_ms = 0;
 }
 
 static void show_title(window_state *w)
@@ -280,6 +285,7 @@ static void run(window_state *w)
         window_pulse_step(&w->pulse, "take the picture");
         settle_camera(w, false);
         draw(w);
+        tell_reload(w);
         settle_camera(w, false);
         ask_picture(w);
         window_pulse_step(&w->pulse, "ask for a picture");

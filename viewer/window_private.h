@@ -33,8 +33,9 @@ typedef struct window_state {
     char opening_path[VIEW_PATH_MAX], own_path[VIEW_PATH_MAX], dropped[VIEW_PATH_MAX];
     char other_path[VIEW_PATH_MAX]; /* empty: there is none */
     uint64_t set_number, asked_number, asks,
-        reload_ask;  /* reload_ask: the first request for a file read again; 0 */
-    double saved_ms; /* when that file was saved; 0: it has been shown */
+        reload_ask;    /* reload_ask: the first request for a file read again; 0 */
+    double saved_work; /* what threads had worked by then [ms] */
+    double saved_ms;   /* when that file was saved; 0: it has been shown */
     view_picture picture;
     char error[4096], other_error[4096], said[640], title[512];
     float times[VIEW_PASSES][VIEW_TIMES];
