@@ -89,6 +89,10 @@ void cli_error(const char *format, ...) SHAPE_PRINTF(1, 2);
 __attribute__((noreturn)) void cli_fail(const char *format, ...) SHAPE_PRINTF(1, 2);
 /* The same, then exit 2: for combinations of options that make no sense. */
 __attribute__((noreturn)) void cli_wrong(const char *format, ...) SHAPE_PRINTF(1, 2);
+/* Ends the program by exit(). Where work that may end so is done on a thread, call() is called from it first, and may keep
+ * it there while another thread ends the program; NULL: no more. */
+__attribute__((noreturn)) void cli_end(int code);
+void cli_before_end(void (*call)(int code));
 /* Whether the command line gave an option by this name, and the first of a table that it gave, or NULL. */
 bool cli_given(const char *name);
 const char *cli_given_of(const cli_option *table);

@@ -13,6 +13,7 @@
 static const char *program_name = "neph";
 static bool be_quiet;
 static char error_place[512];
+static void (*before_end)(int code);
 
 void cli_set_program(const char *name)
 {
@@ -38,13 +39,25 @@ void cli_error(const char *format, ...)
     va_end(arguments);
 }
 
+void cli_before_end(void (*call)(int code))
+{
+    before_end = call;
+}
+
+void cli_end(int code)
+{
+    if (before_end)
+        before_end(code);
+    exit(code);
+}
+
 void cli_fail(const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
     print_line(format, arguments);
     va_end(arguments);
-    exit(CLI_FAILED);
+    cli_end(CLI_FAILED);
 }
 
 void cli_wrong(const char *format, ...)
@@ -53,7 +66,7 @@ void cli_wrong(const char *format, ...)
     va_start(arguments, format);
     print_line(format, arguments);
     va_end(arguments);
-    exit(*error_place ? CLI_FAILED : CLI_WRONG); /* what a file says is no wrong command */
+    cli_end(*error_place ? CLI_FAILED : CLI_WRONG); /* what a file says is no wrong command */
 }
 
 void cli_set_place(const char *format, ...)

@@ -15,7 +15,7 @@ static void fail_lines(char *mistakes)
 {
     for (char *line = strtok(mistakes, "\n"); line; line = strtok(NULL, "\n"))
         cli_error("%s", line);
-    exit(CLI_FAILED);
+    cli_end(CLI_FAILED);
 }
 
 shape_set *view_open_source(const char *path, const view_generator *generator)

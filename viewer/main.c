@@ -16,6 +16,7 @@
 #include "shape/image.h"
 #include "state_scene.h"
 #include "view.h"
+#include "watch.h"
 
 static bool headless, paper_lod, flight;
 static int method, maker = -1;
@@ -474,6 +475,79 @@ static char *find_compared(view_job *job, const shape_scene *scene)
     return path;
 }
 
+/* What the job looks at, kept until the end. */
+typedef struct opened_files {
+    view_job *job;
+    view_opened first, second;
+    shape_set *turned; /* what --morph turns the clouds into */
+    shape_morph *morph;
+    shape_scene *list; /* --mesh */
+    char *compared;
+} opened_files;
+
+static void check_air(void)
+{
+    if (!(method >= SHAPE_GL_PAPER && cli_picture_values.visibility > 0))
+        return;
+    if (cli_given("visibility"))
+        cli_wrong("--visibility: the methods of 2018 have no air (choose default or exact)");
+    cli_say("note: the scene's air is not shown by --method %s", method_names[method]);
+}
+
+static void read_morph(opened_files *files)
+{
+    shape_error error;
+    view_job *job = files->job;
+    view_generator none = view_generator_none(job->seed);
+    if (!morph_path)
+        return;
+    files->turned = view_open_source(morph_path, &none);
+    cli_check(shape_morph_create(job->set, files->turned, &files->morph, &error), &error);
+    job->morph = files->morph;
+}
+
+/* All files of the command line, into the job. Mistakes end the program. */
+static void read_files(void *context)
+{
+    opened_files *files = context;
+    view_job *job = files->job;
+    files->first = view_open(job->path, &job->generator);
+    take_opened(job, &files->first);
+    take_scene(job, files->first.input.scene);
+    view_lighting_check(&job->state->lighting, (int)job->options.method);
+    job->options.lighting = view_lighting_gl(&job->state->lighting);
+    files->compared = find_compared(job, files->first.input.scene);
+    if (job->other_path) {
+        view_generator none = view_generator_none(job->seed);
+        files->second = view_open(job->other_path, &none);
+        job->other_set = files->second.input.set;
+        job->other_watched = view_watch_can(job->other_path) && !files->second.volume;
+    }
+    if (!files->first.volume && !files->second.volume)
+        cli_refuse_volume_options();
+    check_air();
+    if (cli_picture_values.lamp_given)
+        cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
+    job->opaque = render_opaque_read(&files->first.input);
+    job->options.light.opaque = job->opaque;
+    files->list = render_opaque_list();
+    job->more.list = files->list;
+    job->more.has_ground = render_opaque_ground(&job->more.height, job->more.ground_albedo);
+    job->scene_read = files->first.input.scene;
+    check_opaque(job);
+    cli_picture_apply(job->set, &job->view, &job->light);
+    finish_state(job);
+    read_morph(files);
+}
+
+static void read_for_window(void *context)
+{
+    opened_files *files = context;
+    read_files(files);
+    if (error_given)
+        choose_for_window(files->job);
+}
+
 int main(int argc, char **argv)
 {
     double started = view_now_ms();
@@ -483,74 +557,41 @@ int main(int argc, char **argv)
     shape_error error;
     view_frames frames = {0};
     view_job job = {0};
-    shape_set *turned = NULL;
-    shape_morph *morph = NULL;
-    char *compared;
+    opened_files files = {.job = &job};
+    bool window = !headless && !bench_given && !frames_given;
     check_command(&common, &frames);
     plan(&job, &common);
     begin_state(&job);
-    if (!headless && !bench_given && !frames_given)
+    if (window)
         cli_scene_leave_edits(VIEW_CLOUDS_MAX); /* the panel has them */
     cli_save_check(&common);
     if (cli_save_wanted())
         render_opaque_save_check();
-    view_opened opened = view_open(job.path, &job.generator), other = {0};
-    take_opened(&job, &opened);
-    take_scene(&job, opened.input.scene);
-    view_lighting_check(&job.state->lighting, (int)job.options.method);
-    job.options.lighting = view_lighting_gl(&job.state->lighting);
-    compared = find_compared(&job, opened.input.scene);
-    if (job.other_path) {
-        view_generator none = view_generator_none(job.seed);
-        other = view_open(job.other_path, &none);
-        job.other_set = other.input.set;
-        job.other_watched = strcmp(job.other_path, "-") && !other.volume;
-    }
-    if (!opened.volume && !other.volume)
-        cli_refuse_volume_options();
-    if (method >= SHAPE_GL_PAPER && cli_picture_values.visibility > 0) {
-        if (cli_given("visibility"))
-            cli_wrong("--visibility: the methods of 2018 have no air (choose default or exact)");
-        cli_say("note: the scene's air is not shown by --method %s", method_names[method]);
-    }
-    if (cli_picture_values.lamp_given)
-        cli_say("note: neph-view does not show the scene's lamp (neph-render does)");
-    job.opaque = render_opaque_read(&opened.input);
-    job.options.light.opaque = job.opaque;
-    shape_scene *list = render_opaque_list();
-    job.more.list = list;
-    job.more.has_ground = render_opaque_ground(&job.more.height, job.more.ground_albedo);
-    job.scene_read = opened.input.scene;
-    check_opaque(&job);
-    cli_picture_apply(job.set, &job.view, &job.light);
-    finish_state(&job);
-    if (morph_path) {
-        view_generator none = view_generator_none(job.seed);
-        turned = view_open_source(morph_path, &none);
-        cli_check(shape_morph_create(job.set, turned, &morph, &error), &error);
-        job.morph = morph;
-    }
-    if (frames_given) {
-        cli_check(view_frames_draw(&job, &frames, &error), &error);
-    } else if (headless || bench_given) {
-        cli_check(view_job_place(&job, job.time, &error), &error);
-        job.load_ms = view_now_ms() - started;
-        draw_headless(&job, started, &common);
+    if (window) {
+        job.view.width = (int)cli_picture_values.size[0]; /* until a scene says otherwise */
+        job.view.height = (int)cli_picture_values.size[1];
+        const view_window_calls calls = {read_for_window, save_scene, &files};
+        cli_check(view_window(&job, &calls, &error), &error);
     } else {
-        if (error_given)
-            choose_for_window(&job);
-        cli_check(view_window(&job, save_scene, &error), &error);
+        read_files(&files);
+        if (frames_given) {
+            cli_check(view_frames_draw(&job, &frames, &error), &error);
+        } else {
+            cli_check(view_job_place(&job, job.time, &error), &error);
+            job.load_ms = view_now_ms() - started;
+            draw_headless(&job, started, &common);
+        }
     }
     view_job_free(&job);
-    shape_morph_destroy(morph);
-    shape_set_destroy(turned);
-    if (headless || bench_given || frames_given)
+    shape_morph_destroy(files.morph);
+    shape_set_destroy(files.turned);
+    if (!window)
         save_scene(&job);
     free(job.state);
-    free(compared);
+    free(files.compared);
     shape_opaque_destroy(job.opaque);
-    shape_scene_destroy(list);
-    cli_input_free(&opened.input);
-    cli_input_free(&other.input);
+    shape_scene_destroy(files.list);
+    cli_input_free(&files.first.input);
+    cli_input_free(&files.second.input);
     return cli_finish(&common);
 }

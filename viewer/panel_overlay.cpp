@@ -54,9 +54,16 @@ ImVec4 panel_draw_help(const ImVec2 &screen)
     return box;
 }
 
+// Where what is beside the panel begins; 0 where there is no room for it.
+static float panel_right(const view_panel_input &in, const ImVec2 &screen)
+{
+    return in.open && screen.x >= 2 * panel_width() ? panel_width() + 10 : 0;
+}
+
 ImVec4 panel_draw_work(const view_panel_input &in, view_panel_wish &wish, const ImVec2 &screen)
 {
-    ImGui::SetNextWindowPos(ImVec2(screen.x / 2, screen.y - 70), ImGuiCond_Always, ImVec2(0.5f, 1));
+    float left = panel_right(in, screen); // not below the panel
+    ImGui::SetNextWindowPos(ImVec2((left + screen.x) / 2, screen.y - 70), ImGuiCond_Always, ImVec2(0.5f, 1));
     ImGui::Begin("##work", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoFocusOnAppearing);
@@ -90,9 +97,7 @@ void panel_draw_notes(const view_panel_input &in, const ImVec2 &screen)
 {
     char status[256];
     float y = screen.y - 6;
-    // Beside the panel where there is room, so that they hide none of it.
-    float left = in.open && screen.x >= 2 * panel_width() ? panel_width() + 16 : 6,
-          most = screen.x - left - 18;
+    float left = panel_right(in, screen) + 6, most = screen.x - left - 18; // so that they hide none of it
     if (in.open) {
         int samples = in.samples < in.state->samples ? in.samples : in.state->samples;
         std::snprintf(status, sizeof status, "%d/%d samples  %.0f ms  %zu primitives  %s", samples,

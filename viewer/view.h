@@ -54,9 +54,17 @@ view_opened view_open(const char *path, const view_generator *generator);
 /* A .neph or a grammar alone. The caller destroys the set. */
 shape_set *view_open_source(const char *path, const view_generator *generator);
 
-/* window.c: opens the window and stays until it is closed; then closed is called with what the window showed last. Errors:
- * SHAPE_ERROR_SYSTEM where there is no display. */
-shape_status view_window(view_job *job, void (*closed)(const view_job *job), shape_error *error);
+/* window.c: the window. */
+typedef struct view_window_calls {
+    /* Reads the job's files, on a thread of its own while the window opens. Mistakes end the program, by cli_end. */
+    void (*read)(void *context);
+    void (*closed)(const view_job *job); /* with what the window showed last */
+    void *context;                       /* of read */
+} view_window_calls;
+
+/* Opens the window and stays until it is closed; where that is before the files have been read, the program ends. The job
+ * has its title and the size of the view; calls->read fills the rest. Errors: SHAPE_ERROR_SYSTEM where there is no display. */
+shape_status view_window(view_job *job, const view_window_calls *calls, shape_error *error);
 
 /* picture.c: pictures without a window. */
 
@@ -72,7 +80,7 @@ typedef struct view_plan {
     int largest; /* side of what is drawn at once [pixels]; 0: what the GPU can */
     bool alpha;
     void (*progress)(const char *what, double done); /* NULL: none */
-    bool (*go_on)(void *context, double done); /* false ends the work: SHAPE_ERROR_CANCELLED; NULL: go on */
+    bool (*go_on)(void *context, double done);       /* false ends the work: SHAPE_ERROR_LIMIT; NULL: go on */
     void *context;
 } view_plan;
 

@@ -25,7 +25,7 @@ typedef struct file_mark {
     dev_t device;
     ino_t number;
     off_t size;
-    struct timespec changed;
+    struct timespec changed, saved; /* saved: also when another took its place */
 } file_mark;
 
 /* One file, and what is known of it. */
@@ -65,6 +65,13 @@ static double now_ms(void)
     return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
 }
 
+double view_work_ms(void)
+{
+    struct timespec time;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
+}
+
 static bool look(const char *path, file_mark *mark)
 {
     struct stat status;
@@ -75,6 +82,7 @@ static bool look(const char *path, file_mark *mark)
     mark->number = status.st_ino;
     mark->size = status.st_size;
     mark->changed = status.st_mtim;
+    mark->saved = status.st_ctim;
     return true;
 }
 
@@ -98,9 +106,15 @@ static void publish(view_watch *watch, view_news *news)
 
 /* --- which files --- */
 
+bool view_watch_can(const char *path)
+{
+    struct stat status;
+    return path[0] && strcmp(path, "-") && (stat(path, &status) || S_ISREG(status.st_mode));
+}
+
 static bool is_file(const view_watch *watch)
 {
-    return watch->path[0] && strcmp(watch->path, "-");
+    return view_watch_can(watch->path);
 }
 
 /* The number of a file's folder; -1 where nothing tells of it. */
@@ -178,6 +192,7 @@ static void read_file(view_watch *watch, double since, bool things)
 {
     view_news news;
     shape_error error;
+    double start = now_ms(), work = view_work_ms();
     memset(&news, 0, sizeof news);
     pthread_mutex_lock(&watch->mutex);
     view_generator generator = watch->generator;
@@ -201,7 +216,8 @@ static void read_file(view_watch *watch, double since, bool things)
         return;
     }
     news.saved = since;
-    news.milliseconds = now_ms() - since;
+    news.work = work;
+    news.milliseconds = now_ms() - start;
     publish(watch, &news);
 }
 
@@ -292,19 +308,33 @@ static bool attend_file(view_watch *watch, watched_file *file, bool asked)
     return ready;
 }
 
+/* When a file was changed last, written or put in its place, on the clock of now_ms(); now where that cannot be. */
+static double saved_at(const file_mark *mark)
+{
+    enum { MOST_MS = 10000 };
+    struct timespec time;
+    clock_gettime(CLOCK_REALTIME, &time);
+    double ago =
+        1e3 * difftime(time.tv_sec, mark->saved.tv_sec) + 1e-6 * (double)(time.tv_nsec - mark->saved.tv_nsec);
+    return now_ms() - (ago > 0 && ago < MOST_MS ? ago : 0);
+}
+
 /* One look at all files. */
 static void attend(view_watch *watch, bool asked)
 {
     bool ready = false, things = false;
+    double saved = now_ms();
     if (watch->notify >= 0)
         read_events(watch);
     for (int i = 0; i < watch->file_count; i++)
         if (attend_file(watch, &watch->files[i], asked && i == 0 && is_file(watch))) {
             ready = true;
             things = things || i > 0;
+            if (!asked)
+                saved = saved_at(&watch->files[i].shown);
         }
     if (ready || (asked && !is_file(watch)))
-        read_file(watch, now_ms(), things);
+        read_file(watch, saved, things);
 }
 
 static void free_watch(view_watch *watch);

@@ -10,12 +10,18 @@ typedef struct view_watch view_watch;
 typedef struct view_news {
     view_contents contents; /* contents.set is NULL where the file had mistakes; the caller frees it */
     char text[4096];        /* the mistakes, one a line; empty where there are none */
-    double saved;           /* CLOCK_MONOTONIC when the file was found to be saved [ms] */
+    double saved;           /* CLOCK_MONOTONIC when the file was written last, or put in its place [ms] */
+    double work;            /* of all processors for this process, when that was found [ms] */
     double milliseconds;    /* that the reading took */
 } view_news;
 
+/* What all threads of this process have had of the processors so far [ms]. */
+double view_work_ms(void);
+
 enum { VIEW_FILES_MAX = 256 }; /* watched at once; of a scene that names more, the first */
 
+/* Whether a path is one of a file that can be read again: no pipe, and no standard input. */
+bool view_watch_can(const char *path);
 /* Begins to watch the file, those that it names where it is a scene, and those of `more`, which outlives the watch; NULL. `wake` is called from the thread when there is news. Standard input ("-") is read once and not
  * watched; nor is "", which stands for a generator without a file. NULL and *error: threads or memory are out. */
 view_watch *view_watch_start(const char *path, const view_generator *generator, const view_more_things *more,

@@ -13,7 +13,7 @@
 #include "state_scene.h"
 #include "window_private.h"
 
-enum { FIRST_FRAMES = 5, PANEL_WIDTH = 700 }; /* a window narrower than this starts with the panel folded */
+enum { PANEL_WIDTH = 700 }; /* a window narrower than this starts with the panel folded */
 
 static double now_ms(void)
 {
@@ -157,16 +157,21 @@ static void look_at_picture(window_state *w)
             w->times[i][VIEW_TIMES - 1] = (float)ms[i];
         }
     }
-    if (w->saved_ms > 0 && picture.request >= w->reload_ask) {
-        char text[128];
-        snprintf(text, sizeof text, "read again, shown after %.0f ms", now_ms() - w->saved_ms);
-        cli_say("%s: %s", w->job->title, text);
-        window_say(w, text);
-        w->saved_ms = 0;
-    }
     if (strcmp(picture.text, w->picture.text) && !picture.text_is_error)
         window_say(w, picture.text);
     w->picture = picture;
+}
+
+/* The frame that has been presented is the first with a file that was saved. */
+static void tell_reload(window_state *w)
+{
+    char text[128];
+    if (!(w->saved_ms > 0) || w->picture.request < w->reload_ask)
+        return;
+    snprintf(text, sizeof text, "read again, shown after %.0f ms", now_ms() - w->saved_ms);
+    window_say(w, text);
+    cli_say("%s: %s (%.0f ms of the processors)", w->job->title, text, view_work_ms() - w->saved_work);
+    w->saved_ms = 0;
 }
 
 static void show_title(window_state *w)
@@ -178,6 +183,14 @@ static void show_title(window_state *w)
     if (strcmp(title, w->title))
         glfwSetWindowTitle(w->window, title);
     memcpy(w->title, title, sizeof title);
+}
+
+void window_clear(int width, int height)
+{
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, width, height);
+    glClearColor(0.3f, 0.4f, 0.55f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
 }
 
 static void draw(window_state *w)
@@ -198,7 +211,7 @@ static void draw(window_state *w)
         .work_done = work_done,
         .chosen = w->job->chosen,
         .work_ends = window_work_ends(w),
-        .longest_ms = w->longest,
+        .longest_ms = w->pulse.longest,
         .state = &w->state,
         .base = &w->base,
         .texture = p->texture,
@@ -229,16 +242,14 @@ static void draw(window_state *w)
         .playing = w->playing,
         .placed = w->placed ? view_shared_set(w->placed) : NULL,
     };
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width, height);
-    glClearColor(0.3f, 0.4f, 0.55f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
+    window_clear(width, height);
     view_panel_wish wish = view_panel_draw(&input);
     settle_camera(w, true);
+    window_pulse_step(&w->pulse, "draw the panel");
     obey(w, &wish);
-    double before = now_ms();
+    window_pulse_step(&w->pulse, "obey");
     glfwSwapBuffers(w->window); /* waits for the screen, and for a GPU that has other work */
-    w->swap_ms = now_ms() - before;
+    window_pulse_waited(&w->pulse);
 }
 
 /* Either thread may be the first to be told. */
@@ -258,7 +269,7 @@ static void run(window_state *w)
         else
             glfwWaitEventsTimeout(0.5);
         left = left > 0 ? left - 1 : 2;
-        double begun = now_ms();
+        window_pulse_begin(&w->pulse);
         double time = glfwGetTime(), passed = time - w->last;
         w->last = time;
         if (window_fly(w, passed))
@@ -267,19 +278,22 @@ static void run(window_state *w)
             w->state.time += fmin(passed, 0.25);
         settle_camera(w, false);
         window_hear_news(w);
+        window_pulse_step(&w->pulse, "take what was read");
         settle_camera(w, true); /* a scene may have another eye now */
         look_at_picture(w);
         window_compare(w);
+        window_pulse_step(&w->pulse, "take the picture");
         settle_camera(w, false);
         draw(w);
+        tell_reload(w);
         settle_camera(w, false);
         ask_picture(w);
+        window_pulse_step(&w->pulse, "ask for a picture");
         show_title(w);
         if (!view_panel_is_busy() && !w->dragging && !w->looking && !w->splitting && !w->playing)
             view_history_keep(w->history, &w->state);
-        w->frames++;
-        if (w->frames > FIRST_FRAMES) /* the first ones compile what the driver needs */
-            w->longest = fmax(w->longest, now_ms() - begun - w->swap_ms);
+        window_pulse_step(&w->pulse, "keep for undo");
+        window_pulse_end(&w->pulse);
     }
 }
 
@@ -311,7 +325,7 @@ static GLFWwindow *open_window(int width, int height, const char *title, GLFWwin
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
-    glfwWindowHint(GLFW_VISIBLE, share ? GLFW_FALSE : GLFW_TRUE);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     return glfwCreateWindow(width, height, title, NULL, share);
 }
 
@@ -357,7 +371,7 @@ static shape_status start_files(window_state *w, shape_error *error)
     if (status)
         return status;
     /* A morph's pairs are made once, of the file as it was opened; a volume is read once. */
-    if (strcmp(job->path, "-") && !job->morph && !job->volume_file) {
+    if ((!job->path[0] || view_watch_can(job->path)) && !job->morph && !job->volume_file) {
         w->watch = view_watch_start(job->path, &job->generator, &job->more, wake, error);
         if (!w->watch)
             return error->status;
@@ -375,34 +389,39 @@ static void end_files(window_state *w)
     view_shared_drop(w->other_set);
 }
 
-/* What is drawn with, and in, from the window to the drawing thread. */
-static shape_status start_drawing(window_state *w, GLFWwindow **hidden, shape_error *error)
+/* The window, not shown yet, and the drawing thread's. */
+static shape_status open_windows(window_state *w, shape_error *error)
 {
-    const view_job *job = w->job;
-    int size[2] = {job->view.width, job->view.height};
+    int size[2] = {w->job->view.width, w->job->view.height};
     if (w->asked_size[0] > 0) /* another one in the place of one that was lost */
         memcpy(size, w->asked_size, sizeof size);
     w->window = open_window(size[0], size[1], w->title, NULL);
     if (!w->window)
         return no_window("no window with OpenGL 3.3", error);
-    *hidden = open_window(16, 16, "", w->window);
-    if (!*hidden)
+    w->hidden = open_window(16, 16, "", w->window);
+    if (!w->hidden)
         return no_window("no second OpenGL context", error);
     glfwMakeContextCurrent(w->window);
     glfwSwapInterval(1);
     window_listen(w);
     view_panel_start(w->window);
     w->panel_started = true;
+    return SHAPE_OK;
+}
+
+static shape_status start_drawing(window_state *w, shape_error *error)
+{
+    const view_job *job = w->job;
     memset(&w->picture, 0, sizeof w->picture);
     w->picture.doing = "";
     w->picture.shot_done = -1;
     w->asked_size[0] = w->asked_size[1] = 0; /* ask anew */
-    const view_render_start start = {job->options, job->morph, make_current, *hidden, wake, job->largest};
+    const view_render_start start = {job->options, job->morph, make_current, w->hidden, wake, job->largest};
     w->renderer = view_renderer_start(&start, error);
     return w->renderer ? SHAPE_OK : error->status;
 }
 
-static void end_drawing(window_state *w, GLFWwindow *hidden)
+void window_close(window_state *w)
 {
     window_stop_comparing(w);
     view_renderer_stop(w->renderer);
@@ -412,33 +431,56 @@ static void end_drawing(window_state *w, GLFWwindow *hidden)
     if (w->panel_started)
         view_panel_stop();
     w->panel_started = false;
-    if (hidden)
-        glfwDestroyWindow(hidden);
+    if (w->hidden)
+        glfwDestroyWindow(w->hidden);
     if (w->window)
         glfwDestroyWindow(w->window);
-    w->window = NULL;
+    w->window = w->hidden = NULL;
+}
+
+/* Reads the job's files and begins with what they say. */
+static shape_status begin(window_state *w, shape_error *error)
+{
+    view_job *job = w->job;
+    shape_dvec3 min = {-1, -1, -1}, max = {1, 1, 1};
+    int width = job->view.width, height = job->view.height;
+    window_read_files(w);
+    if (width != job->view.width || height != job->view.height)
+        glfwSetWindowSize(w->window, job->view.width, job->view.height);
+    shape_set_bounds(job->set, &min, &max);
+    w->things = view_things_make(job->opaque);
+    job->opaque = NULL; /* it goes with the last who looks at it */
+    w->scene = job->scene_read;
+    begin_state(w);
+    w->camera = w->start = view_camera_start(&job->view, min, max);
+    glfwGetWindowSize(w->window, &width, NULL);
+    w->open = width >= PANEL_WIDTH;
+    return start_files(w, error);
 }
 
 /* One window, to its end. *lost: its context was. */
 static shape_status show(window_state *w, bool *lost, shape_error *error)
 {
-    GLFWwindow *hidden = NULL;
-    shape_status status = start_drawing(w, &hidden, error);
-    int width;
-    if (!status && !w->set) {
-        glfwGetWindowSize(w->window, &width, NULL);
-        w->open = width >= PANEL_WIDTH;
-        status = start_files(w, error);
+    shape_status status = open_windows(w, error);
+    if (!w->set) {
+        if (status)
+            w->calls->read(w->calls->context); /* a file's mistakes come first */
+        else
+            status = begin(w, error);
     }
     if (!status)
+        status = start_drawing(w, error);
+    if (!status) {
+        glfwShowWindow(w->window);
         run(w);
+    }
     *lost = !status && !glfwWindowShouldClose(w->window);
     if (w->window && !*lost) {
         glfwHideWindow(w->window); /* what is being done may take a moment to end */
         glfwPollEvents();
     }
     int size[2] = {w->asked_size[0], w->asked_size[1]};
-    end_drawing(w, hidden);
+    window_close(w);
     memcpy(w->asked_size, size, sizeof size);
     return status;
 }
@@ -462,31 +504,27 @@ static shape_status show_on(window_state *w, shape_error *error)
                            TRIES);
 }
 
-shape_status view_window(view_job *job, void (*closed)(const view_job *job), shape_error *error)
+shape_status view_window(view_job *job, const view_window_calls *calls, shape_error *error)
 {
-    if (!glfwInit())
+    if (!glfwInit()) {
+        calls->read(calls->context);
         return no_window("no window", error);
+    }
     window_state *w = calloc(1, sizeof *w);
     if (!w) {
         glfwTerminate();
         return shape_error_memory(error);
     }
-    shape_dvec3 min = {-1, -1, -1}, max = {1, 1, 1};
-    shape_set_bounds(job->set, &min, &max);
     w->job = job;
+    w->calls = calls;
     w->wake = wake;
-    w->things = view_things_make(job->opaque);
-    job->opaque = NULL; /* it goes with the last who looks at it */
-    w->scene = job->scene_read;
     w->picture.doing = "";
-    begin_state(w);
-    w->camera = w->start = view_camera_start(&job->view, min, max);
     snprintf(w->title, sizeof w->title, "%.440s - neph-view [working]", job->title);
+    window_pulse_start(&w->pulse);
     shape_status status = show_on(w, error);
     end_files(w);
-    if (w->frames)
-        cli_say("%llu frames of the window, the longest took %.0f ms", (unsigned long long)w->frames,
-                w->longest);
+    window_pulse_say(&w->pulse);
+    window_pulse_stop(&w->pulse);
     if (!status) {
         view_job last = *job; /* as the window was */
         last.state = &w->state;
@@ -495,7 +533,7 @@ shape_status view_window(view_job *job, void (*closed)(const view_job *job), sha
         last.set = view_shared_set(w->set);
         last.view.width = w->asked_size[0];
         last.view.height = w->asked_size[1];
-        closed(&last);
+        calls->closed(&last);
     }
     view_shared_drop(w->set);
     shape_scene_destroy(w->own_scene);

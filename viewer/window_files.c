@@ -105,6 +105,7 @@ static void hear_own(window_state *w)
     w->base.cloud_count = next.cloud_count;
     w->read_ms = news.milliseconds;
     w->saved_ms = news.saved;
+    w->saved_work = news.work;
     w->reload_ask = w->asks + 1;
     if (window_take_set(w, news.contents.set, &error))
         snprintf(w->error, sizeof w->error, "%s", error.text);

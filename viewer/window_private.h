@@ -11,10 +11,12 @@
 #include "setting.h"
 #include "view.h"
 #include "watch.h"
+#include "window_pulse.h"
 
 typedef struct window_state {
-    GLFWwindow *window;
+    GLFWwindow *window, *hidden; /* hidden: has the drawing thread's context */
     view_job *job;
+    const view_window_calls *calls;
     view_camera camera, start;
     double mouse_x, mouse_y;
     bool dragging, looking, splitting; /* which drag is under way */
@@ -31,17 +33,16 @@ typedef struct window_state {
     char opening_path[VIEW_PATH_MAX], own_path[VIEW_PATH_MAX], dropped[VIEW_PATH_MAX];
     char other_path[VIEW_PATH_MAX]; /* empty: there is none */
     uint64_t set_number, asked_number, asks,
-        reload_ask;  /* reload_ask: the first request for a file read again; 0 */
-    double saved_ms; /* when that file was saved; 0: it has been shown */
+        reload_ask;    /* reload_ask: the first request for a file read again; 0 */
+    double saved_work; /* what threads had worked by then [ms] */
+    double saved_ms;   /* when that file was saved; 0: it has been shown */
     view_picture picture;
     char error[4096], other_error[4096], said[640], title[512];
     float times[VIEW_PASSES][VIEW_TIMES];
     double read_ms, last, said_until;
     bool open, help, playing, undo, redo, home, shoot, copy, save, escape;
-    double longest;  /* time between two looks at the events [ms], but for waiting */
+    window_pulse pulse;
     double asked_at; /* when a picture was asked for last [s] */
-    double swap_ms;  /* of the last frame: waiting for the screen */
-    uint64_t frames; /* drawn */
     bool panel_started;
     size_t primitives;
     view_reference *reference; /* NULL until the difference is wanted */
@@ -50,6 +51,12 @@ typedef struct window_state {
     unsigned map;       /* the difference as a texture */
     void (*wake)(void); /* for threads with news */
 } window_state;
+
+/* --- window_begin.c: the first files --- */
+
+/* Has them read by w->calls, and shows the window with a bar where that takes long. Ends the program where they have
+ * mistakes, or where the window is closed before they have been read. */
+void window_read_files(window_state *w);
 
 /* --- window_scene.c: a scene that is read again --- */
 
@@ -111,6 +118,10 @@ void window_stop_comparing(window_state *w);
 
 /* --- window.c --- */
 
+/* Clears what is shown, of so many pixels. */
+void window_clear(int width, int height);
+/* Ends what is drawn with. */
+void window_close(window_state *w);
 /* Shows a line for a moment. */
 void window_say(window_state *w, const char *text);
 

@@ -24,6 +24,9 @@ typedef struct gl_target {
 /* Makes, or makes anew, the textures of a size, and a depth buffer where one is wanted. */
 shape_status gl_target_make(gl_target *target, int width, int height, bool depth, shape_error *error);
 void gl_target_free(gl_target *target);
+/* Waits for what is being drawn, before a texture is written that may be in it. A driver that waits by itself (Mesa) does so
+ * under a lock that all contexts share, and the window, which has another one, would stand still meanwhile. */
+void gl_settle(void);
 /* A 3-D texture with linear filtering, clamped at its edges; data may be NULL. */
 GLuint gl_volume_texture(const int size[3], GLint internal, GLenum format, GLenum kind, const void *data);
 

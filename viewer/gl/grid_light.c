@@ -442,6 +442,7 @@ shape_status gl_light_compose(gl_light *light, shape_gl_renderer *renderer, shap
         compose_one(light, renderer, eye, scene->shown[0], light->cells);
     if (!light->seen)
         light->seen = gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, NULL);
+    gl_settle();
     glBindTexture(GL_TEXTURE_3D, light->seen);
     for (int i = 0; i < count; i++) {
         const gl_box *box = &light->boxes[scene->shown[i]];

@@ -69,6 +69,7 @@ static void send_layers(const gl_pool *pool, gl_dense *dense, int layers)
 {
     const int *n = dense->baked.size, *place = dense->place;
     const uint8_t *from = dense->baked.voxels + 2 * (size_t)n[0] * (size_t)n[1] * (size_t)dense->sent;
+    gl_settle();
     glBindTexture(GL_TEXTURE_3D, pool->texture);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexSubImage3D(GL_TEXTURE_3D, 0, place[0], place[1], place[2] + dense->sent, n[0], n[1], layers, GL_RG,
@@ -89,6 +90,7 @@ static shape_status resize(gl_pool *pool, const int size[3], shape_error *error)
     if (!pool->texture) {
         pool->texture = gl_volume_texture(size, GL_RG8, GL_RG, GL_UNSIGNED_BYTE, NULL);
     } else {
+        gl_settle();
         glBindTexture(GL_TEXTURE_3D, pool->texture);
         glTexImage3D(GL_TEXTURE_3D, 0, GL_RG8, size[0], size[1], size[2], 0, GL_RG, GL_UNSIGNED_BYTE, NULL);
     }

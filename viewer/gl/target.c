@@ -40,6 +40,11 @@ shape_status gl_target_make(gl_target *target, int width, int height, bool depth
     return SHAPE_OK;
 }
 
+void gl_settle(void)
+{
+    glFinish();
+}
+
 GLuint gl_volume_texture(const int size[3], GLint internal, GLenum format, GLenum kind, const void *data)
 {
     static const GLenum edges[] = {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R};

@@ -283,6 +283,7 @@ void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape
         shape_record_set_eye((float(*)[4])record, c, camera->origin);
     }
     scene->shown_count = count;
+    gl_settle();
     glBindTexture(GL_TEXTURE_2D, scene->clouds);
     if (count)
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, GL_RECORD_TEXELS, count, GL_RGBA, GL_FLOAT, rows);
