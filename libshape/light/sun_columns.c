@@ -65,18 +65,24 @@ float sun_columns_depth(const sun_columns *c, shape_vec3 p)
     return find_row(c, p, &place) ? row_depth(&c->at, &place, (&p.x)[c->at.axis[0]]) : 0;
 }
 
-void sun_columns_add_row(const sun_columns *c, const shape_lightgrid *grid, int row)
+void sun_columns_add_slab(const sun_columns *c, const shape_lightgrid *grid, int z)
 {
-    float *cells = grid->cells + (size_t)row * (size_t)grid->size[0] * SHAPE_LIGHTGRID_VALUES;
-    shape_vec3 p = lightgrid_point(grid, 0, row % grid->size[1], row / grid->size[1], 0.5f, 0.5f, 0.5f);
-    const float low = grid->box.min.x, width = grid->box.max.x - low;
-    row_place place;
-    bool along = c->at.axis[0] == 0;
-    if (along && !find_row(c, p, &place))
-        return;
-    for (int i = 0; i < grid->size[0]; i++) {
-        p.x = low + width * ((float)i + 0.5f) / (float)grid->size[0];
-        cells[i * SHAPE_LIGHTGRID_VALUES] += along ? row_depth(&c->at, &place, p.x) : sun_columns_depth(c, p);
+    /* Along the columns' rows, which run along x or y. */
+    const int u = c->at.axis[0], v = 1 - u;
+    const size_t stride[2] = {1, (size_t)grid->size[0]};
+    const float low = (&grid->box.min.x)[u], width = (&grid->box.max.x)[u] - low;
+    float *slab =
+        grid->cells + (size_t)z * (size_t)grid->size[0] * (size_t)grid->size[1] * SHAPE_LIGHTGRID_VALUES;
+    for (int row = 0; row < grid->size[v]; row++) {
+        row_place place;
+        shape_vec3 p = lightgrid_point(grid, u ? row : 0, u ? 0 : row, z, 0.5f, 0.5f, 0.5f);
+        if (!find_row(c, p, &place))
+            continue;
+        for (int i = 0; i < grid->size[u]; i++) {
+            size_t cell = (size_t)row * stride[v] + (size_t)i * stride[u];
+            slab[cell * SHAPE_LIGHTGRID_VALUES] +=
+                row_depth(&c->at, &place, low + width * ((float)i + 0.5f) / (float)grid->size[u]);
+        }
     }
 }
 

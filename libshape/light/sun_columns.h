@@ -51,8 +51,8 @@ size_t sun_columns_cells(const sun_layout *at);
 
 /* Optical depth to the sun at a point of the cloud's frame, through this cloud alone. */
 float sun_columns_depth(const sun_columns *columns, shape_vec3 p);
-/* Adds it to value 0 of a row of cells of the cloud's own light grid: row y + size[1] z. */
-void sun_columns_add_row(const sun_columns *columns, const shape_lightgrid *grid, int row);
+/* Adds it to value 0 of those cells of the cloud's own light grid that have the same z. */
+void sun_columns_add_slab(const sun_columns *columns, const shape_lightgrid *grid, int z);
 /* Whether a light grid has the cells that were swept. */
 bool sun_columns_same_grid(const sun_columns *columns, const shape_lightgrid *grid);
 /* Value 0 of the cells of such a grid that lie in a layer. */

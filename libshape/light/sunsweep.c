@@ -78,8 +78,8 @@ static void fill_part(const sun_columns *own, bool same, int part, shape_lightgr
 {
     if (same)
         sun_columns_fill_layer(own, part, grid);
-    for (int y = 0; y < grid->size[1] && !same; y++)
-        sun_columns_add_row(own, grid, part * grid->size[1] + y);
+    else
+        sun_columns_add_slab(own, grid, part);
 }
 
 /* The shadows of all others on the cells of one z, in their order. */
