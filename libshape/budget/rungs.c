@@ -78,7 +78,7 @@ static shape_status try_steps(chooser *c, int grid, probe_picture *pictures, sha
     for (int i = 0; i < k - 2 && !status; i += 2)
         c->step_error[i] = probe_change(&c->probe, &pictures[i], &pictures[k - 2]);
     /* The last itself: of order 1 at the jumps of a density. */
-    c->step_error[k - 2] = k > 2 ? c->step_error[k - 4] / 2 : 0;
+    c->step_error[k - 2] = k >= 4 ? c->step_error[k - 4] / 2 : 0;
     for (int i = 1; i < k - 2; i += 2) {
         c->step_error[i] = sqrt(c->step_error[i - 1] * c->step_error[i + 1]);
         c->looks[i] = sqrt(c->looks[i - 1] * c->looks[i + 1]);
@@ -186,6 +186,7 @@ static double off(int cells)
 /* The share of an error `change` that is still there where it has shrunk from one rung's to another's. */
 static double left(double change, int from, int to)
 {
+    /* NOLINTNEXTLINE: `from` is at least 0, since grids have been tried */
     double a = off(chooser_cells[from]), b = off(chooser_cells[to]);
     return change * b / (a - b);
 }
@@ -194,7 +195,7 @@ static double left(double change, int from, int to)
  * finer ones by that, which shrinks more slowly than by the law. The 0.7 was fitted to forty scenes (docs/error.md). */
 static void rate_light(chooser *c, const probe_picture *pictures)
 {
-    int last = c->tried - 1;
+    int last = c->tried - 1; /* 2 at least: GRIDS_LEAST have been tried */
     for (int k = 0; k < last; k++)
         c->cell_error[k] = probe_change(&c->probe, &pictures[k], &pictures[last]);
     c->tail = sqrt(0.7 * left(c->cell_error[last - 1], last - 1, last) *
