@@ -326,7 +326,7 @@ static void plan(view_job *job, const cli_common *common)
     job->options.shader_folder = shader_folder;
     job->options.paper_lod = paper_lod;
     job->options.no_background = alpha;
-    job->options.background = bench_given;
+    job->options.background = job->options.early = bench_given;
     job->options.seed = common->seed;
     job->options.light.resolution = paper && !light_grid_given ? 40 : (int)light_grid;
     job->samples = (int)samples;

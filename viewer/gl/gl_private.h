@@ -80,6 +80,7 @@ typedef struct gl_tiles {
     int list_columns;  /* of their tiles */
     float list_scale;  /* see shaders/view/march_list.glsl */
     int columns, empty_count, one_count, several_count;
+    float *texels; /* of `lists` */
 } gl_tiles;
 
 shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
@@ -261,13 +262,15 @@ typedef struct gl_frame {
     const gl_tiles *tiles;
     const shape_gl_part *part; /* of the view; never of width 0 */
     int sample;
-    bool moving;
+    bool moving, quick; /* quick: of early.c, the first of all pictures */
     float share; /* of what is drawn in the picture that is there already, 1: all; of moving pictures */
 } gl_frame;
 
 /* What the default method has of its own. */
 typedef struct gl_preview {
-    GLuint sky, one, several, fill, sky_picture_program;
+    GLuint sky_picture_program, one, fill, several, sky; /* in the order in which they are compiled */
+    int compiled;                                        /* how many of them are */
+    int warm;                                            /* how many the driver has made ready, too */
     gl_target coarse;      /* a moving view's first pass: every second pixel each way */
     gl_target sky_picture; /* see shaders/view/sky_picture.glsl */
     bool moving;           /* the last picture was a moving view's */
@@ -295,6 +298,7 @@ struct shape_gl_renderer {
     gl_pool pool;
     int fade_left;
     bool light_changed, refined;
+    bool early, early_drawn; /* the picture that is being drawn, any picture: without shaders (early.c) */
     gl_preview preview;
     gl_surface surface;
     gl_air air;
@@ -353,12 +357,24 @@ void gl_air_free(gl_air *air);
 
 /* --- preview.c: the default method --- */
 
-/* defines: of all programs, "" or "#define AIR\n". Makes them anew where they are there. */
-shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines,
-                               shape_error *error);
+enum { GL_PREVIEW_PROGRAMS = 5 };
+/* How many of them a moving view of the volume needs. */
+int gl_preview_needed(const shape_gl_renderer *renderer);
+/* Compiles those of the first `count` programs that are not compiled yet. */
+shape_status gl_preview_compile(shape_gl_renderer *renderer, int count, shape_error *error);
+/* Draws next to nothing by one more program, since drivers compile the rest of a shader when it is first drawn with. */
+shape_status gl_preview_warm(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
+                             shape_error *error);
+void gl_preview_drop_programs(gl_preview *preview);
 shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
 void gl_preview_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame);
 void gl_preview_free(gl_preview *preview);
+
+/* --- early.c: the same without shaders --- */
+
+/* Draws a moving view's picture on the CPU, after gl_light_compose and gl_tiles_make for it. No opaque things, no air. */
+shape_status gl_early_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
+                           shape_error *error);
 
 /* --- parts.c: the exact method --- */
 

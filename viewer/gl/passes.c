@@ -49,9 +49,11 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     made->options = *options;
     const char *folder = options->shader_folder;
     static const char whole[] = "view/fullscreen.vert";
+    if (options->method != SHAPE_GL_DEFAULT || folder)
+        made->options.early = false;
     shape_status status = SHAPE_OK;
-    if (options->method == SHAPE_GL_DEFAULT)
-        status = gl_preview_create(&made->preview, folder, "", error);
+    if (options->method == SHAPE_GL_DEFAULT && !made->options.early)
+        status = gl_preview_compile(made, GL_PREVIEW_PROGRAMS, error);
     if (!status)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
@@ -205,8 +207,8 @@ static shape_status change_air(shape_gl_renderer *renderer, shape_error *error)
     renderer->with_air = air;
     if (renderer->options.method != SHAPE_GL_DEFAULT)
         return prepare_program(renderer, error);
-    return gl_preview_create(&renderer->preview, renderer->options.shader_folder, air ? "#define AIR\n" : "",
-                             error);
+    gl_preview_drop_programs(&renderer->preview);
+    return renderer->options.early ? SHAPE_OK : gl_preview_compile(renderer, GL_PREVIEW_PROGRAMS, error);
 }
 
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
@@ -243,7 +245,11 @@ static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int 
         return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                "a picture of %dx%d is larger than this GPU draws (%dx%d)", width, height,
                                largest, largest);
+    static const float nothing[4];
     shape_status status = gl_target_make(&renderer->mean, width, height, true, error);
+    for (int i = 0; i < 2 && !status;
+         i++) /* what is drawn first is blended with it, though it counts nothing */
+        glClearBufferfv(GL_COLOR, i, nothing);
     if (!status && renderer->options.method == SHAPE_GL_DEFAULT)
         status = gl_preview_resize(&renderer->preview, width, height, error);
     if (!status)
@@ -279,8 +285,6 @@ void gl_draw_triangle(const shape_gl_renderer *renderer)
 
 void gl_begin_mix(float share)
 {
-    if (share >= 1)
-        return;
     glEnable(GL_BLEND);
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
     glBlendColor(0, 0, 0, share);
@@ -288,7 +292,8 @@ void gl_begin_mix(float share)
 
 void gl_begin_mean(int sample)
 {
-    gl_begin_mix(1.0f / (float)(sample + 1));
+    if (sample > 0)
+        gl_begin_mix(1.0f / (float)(sample + 1));
 }
 
 shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
@@ -330,6 +335,24 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     return SHAPE_OK;
 }
 
+/* Whether moving pictures are still drawn without shaders. */
+static bool is_early(const shape_gl_renderer *r)
+{
+    return r->options.early && !r->options.light.opaque && !gl_has_air(r) &&
+           r->preview.warm < gl_preview_needed(r);
+}
+
+/* The first picture at once; with each of the next ones a shader is made ready. */
+static shape_status draw_early(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
+                               shape_error *error)
+{
+    shape_status status = SHAPE_OK;
+    if (renderer->early_drawn)
+        status = gl_preview_warm(renderer, grids, frame, error);
+    renderer->early_drawn = true;
+    return status ? status : gl_early_draw(renderer, grids, frame, error);
+}
+
 /* The preview by one set of grids. */
 static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_frame *frame, shape_error *error)
 {
@@ -344,6 +367,12 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
         return status;
     if (renderer->options.method != SHAPE_GL_DEFAULT)
         return draw_whole(renderer, frame, error);
+    if (renderer->early)
+        return draw_early(renderer, grids, frame, error);
+    status = gl_preview_compile(renderer, frame->moving ? gl_preview_needed(renderer) : GL_PREVIEW_PROGRAMS,
+                                error);
+    if (status)
+        return status;
     gl_preview_draw(renderer, grids, frame);
     return SHAPE_OK;
 }
@@ -356,13 +385,14 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     shape_status status = prepare_targets(renderer, part->width, part->height, error);
     if (!moving)
         renderer->fade_left = 0; /* a picture at rest is of the last grids alone */
+    renderer->early = moving && is_early(renderer);
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)
         return status;
     shape_camera camera = shape_view_camera(view);
     gl_tiles tiles;
-    gl_frame frame = {view, &camera, &tiles, part, sample, moving, 1};
+    gl_frame frame = {view, &camera, &tiles, part, sample, moving, !renderer->early_drawn, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
     status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, part, &camera, error);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
@@ -409,7 +439,7 @@ bool shape_gl_refined(shape_gl_renderer *renderer)
 bool shape_gl_pending(const shape_gl_renderer *renderer)
 {
     return renderer->refinement || renderer->coming.light || renderer->coming.baked ||
-           renderer->fade_left > 0;
+           renderer->fade_left > 0 || is_early(renderer);
 }
 
 void shape_gl_finish(void)

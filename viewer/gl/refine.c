@@ -183,7 +183,7 @@ static shape_status bring(shape_gl_renderer *r, int texture_limit, shape_error *
     bool all = true;
     shape_status status =
         coming->baked ? send(r, coming->baked, SLICE, texture_limit, &all, error) : SHAPE_OK;
-    if (status || !all || r->fade_left > 0)
+    if (status || !all || r->fade_left > 0 || r->early)
         return status;
     status = join(coming, &r->grids, texture_limit, error);
     if (status)

@@ -39,6 +39,9 @@ typedef struct shape_gl_options {
     bool no_background; /* the sky lights the clouds and is not seen behind them */
     bool
         background; /* default method: draw at once by something coarse, and make the rest on a thread meanwhile */
+    bool
+        early; /* default method: moving views of clouds alone are drawn on the CPU until the shaders are compiled, which
+                   happens bit by bit meanwhile; no matter with a shader_folder, opaque things or air */
     bool paper_lod; /* the paper's printed distance formula for its step, rather than 0.1 */
 } shape_gl_options;
 
