@@ -10,6 +10,7 @@
 #include "cli_volume.h"
 #include "shape/file.h"
 #include "render_opaque.h"
+#include "ready.h"
 #include "scene_file.h"
 #include "setting.h"
 #include "shape/image.h"
@@ -203,7 +204,13 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     shape_light light = job->light;
     view_course_view(&job->course, job->time, &view);
     view_course_light(&job->course, job->time, &light);
-    cli_check(shape_gl_context_create(&context, &error), &error);
+    view_ready *ready;
+    shape_gl_first *first;
+    cli_check(view_ready_start(job, &view, &light, &ready, &error), &error);
+    shape_error no_context;
+    shape_status opened = shape_gl_context_create(&context, &no_context);
+    cli_check(view_ready_end(ready, &first, &error), &error);
+    cli_check(opened, &no_context);
     if (job->other_set) {
         unsigned char *bytes;
         size_t size;
@@ -221,6 +228,7 @@ static void draw_headless(view_job *job, double started, const cli_common *commo
     cli_check(shape_gl_create(&job->options, &renderer, &error), &error);
     cli_check(shape_gl_load(renderer, job->volume, &error), &error);
     cli_check(shape_gl_light(renderer, &light, &error), &error);
+    shape_gl_take_first(renderer, first);
     if (bench_given) {
         const view_bench plan = {(int)bench_frames, flight, method_names[job->options.method], frames_file,
                                  started};
@@ -528,7 +536,6 @@ int main(int argc, char **argv)
     if (frames_given) {
         cli_check(view_frames_draw(&job, &frames, &error), &error);
     } else if (headless || bench_given) {
-        cli_check(view_job_place(&job, job.time, &error), &error);
         job.load_ms = view_now_ms() - started;
         draw_headless(&job, started, &common);
     } else {

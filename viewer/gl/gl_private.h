@@ -222,6 +222,15 @@ typedef struct gl_grids {
     gl_baked *baked; /* of the default method */
 } gl_grids;
 
+/* --- refine.c, first.c: an order carried out; needs no OpenGL --- */
+
+/* Makes of an order something coarse, of what is wholly missing. */
+void gl_order_first(gl_order *order);
+/* Makes what is wanted; ms gets how long light and density took, where they were. The caller drops the grids. */
+shape_status gl_order_make(const gl_order *order, gl_grids *made, double ms[2], shape_error *error);
+/* Whether what shape_gl_take_first has brought is what a first order asks for; then the caller gets it, with its times. */
+bool gl_first_use(shape_gl_renderer *renderer, const gl_order *order, gl_grids *grids, double ms[2]);
+
 /* --- surface.c, surface_shade.c: opaque things --- */
 
 typedef struct gl_surface {
@@ -292,6 +301,7 @@ struct shape_gl_renderer {
     const shape_volume *volume;
     gl_scene scene;
     gl_grids grids, last_grids; /* the last ones are faded out while fade_left frames remain */
+    shape_gl_first *first;      /* what was made before there was a renderer, or NULL */
     gl_refinement *refinement;  /* what is being made on a thread, or NULL */
     gl_grids coming;            /* what it has made, while that is sent to the GPU; NULL where nothing is */
     double coming_ms[2];        /* how long light and baked density of it took */

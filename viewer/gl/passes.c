@@ -80,6 +80,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     if (!renderer)
         return;
     gl_refine_stop(renderer);
+    shape_gl_first_free(renderer->first);
     gl_scene_free(&renderer->scene);
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);

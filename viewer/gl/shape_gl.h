@@ -64,6 +64,19 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
                              shape_error *error);
 void shape_gl_destroy(shape_gl_renderer *renderer); /* NULL is allowed */
 
+/* --- first.c: what the first picture needs of the processor, made while a context is being opened --- */
+
+typedef struct shape_gl_first shape_gl_first;
+
+/* Light and density for a renderer's first picture, for options with `background` set; else *made is NULL. Needs no OpenGL,
+ * and may run on any thread. The volume must live as long as what is made. */
+shape_status shape_gl_first_make(const shape_gl_options *options, const shape_volume *volume,
+                                 const shape_light *light, const shape_view *view, shape_gl_first **made,
+                                 shape_error *error);
+void shape_gl_first_free(shape_gl_first *first); /* NULL is allowed */
+/* The renderer takes it over. It is used where the first picture is of that volume, light and view, and no matter else. */
+void shape_gl_take_first(shape_gl_renderer *renderer, shape_gl_first *first);
+
 /* Uploads a volume; it must live until the next load or the end. */
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error);
 /* Sets the light; needed after shape_gl_load. The light pass, on the CPU, is made before the next picture. */
