@@ -2,6 +2,7 @@
  * preview.frag and preview_fill.frag draw, from the same grids, with the same starts, to rounding. On Mesa's llvmpipe the
  * shaders take longer to compile than all else that a first picture needs. Clouds alone: without opaque things and air. */
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,7 @@ typedef struct painter {
     int stride; /* pixels from a ray of the first pass to the next */
     bool quick; /* of four pixels, and what lies between them is taken from these whether they agree or not */
     float *sky, *coarse; /* 3 and 4 numbers a texel: radiance; radiance without the sky, transmittance */
+    float *rows; /* scratch, row_floats a thread */
     float *rgba;         /* rows from below */
 } painter;
 
@@ -301,15 +303,54 @@ static void look(const painter *p, int x, int y, float to[4], long *steps, long 
 
 /* --- the picture --- */
 
-static void sky_behind(const painter *p, int x, int y, float rgb[3])
+/* What lies between two rows of texels, as long as these. */
+static void mix_rows(const float *below, const float *above, float part, int count, float *to)
 {
-    const float fx = (float)(x % SKY_SPACING) / SKY_SPACING, fy = (float)(y % SKY_SPACING) / SKY_SPACING;
-    const float *a = p->sky +
-                     3 * ((size_t)(y / SKY_SPACING) * (size_t)p->sky_across + (size_t)(x / SKY_SPACING)),
-                *b = a + 3 * (size_t)p->sky_across;
-    for (int k = 0; k < 3; k++) {
-        float low = a[k] + fx * (a[3 + k] - a[k]), high = b[k] + fx * (b[3 + k] - b[k]);
-        rgb[k] = low + fy * (high - low);
+    for (int i = 0; i < count; i++)
+        to[i] = below[i] + part * (above[i] - below[i]);
+}
+
+/* Whether the four rays of the first pass around a pixel agree about what lies between them. */
+static bool agree(const painter *p, int x, int y, const float mean[4])
+{
+    const int s = p->stride, x0 = x / s, y0 = y / s, x1 = least_int(x0 + (x % s > 0), p->across - 1),
+              y1 = least_int(y0 + (y % s > 0), p->down - 1);
+    const float *a = p->coarse + 4 * (size_t)(y0 * p->across + x0), *b = p->coarse + 4 * (size_t)(y0 * p->across + x1),
+                *c = p->coarse + 4 * (size_t)(y1 * p->across + x0), *d = p->coarse + 4 * (size_t)(y1 * p->across + x1);
+    float apart[2];
+    for (int k = 0; k < 2; k++) { /* green, transmittance */
+        const int v = 1 + 2 * k;
+        apart[k] = most(most(a[v], b[v]), most(c[v], d[v])) - least(least(a[v], b[v]), least(c[v], d[v]));
+    }
+    return most(apart[1], apart[0] / (mean[1] + mean[3] + 0.02f)) <= AGREEMENT;
+}
+
+/* Room for a row of the first pass, with one more, and one of the sky. */
+static size_t row_floats(const painter *p)
+{
+    return 4 * ((size_t)p->across + 1) + 3 * (size_t)p->sky_across;
+}
+
+static void paint_row(const painter *p, int y, float *coarse, long *steps, long *fetches)
+{
+    float *sky = coarse + 4 * (p->across + 1);
+    const int s = p->stride, y0 = y / s, y1 = least_int(y0 + (y % s > 0), p->down - 1);
+    const float *sky_row = p->sky + 3 * (size_t)(y / SKY_SPACING) * (size_t)p->sky_across;
+    mix_rows(p->coarse + 4 * (size_t)(y0 * p->across), p->coarse + 4 * (size_t)(y1 * p->across),
+             (float)(y % s) / (float)s, 4 * p->across, coarse);
+    mix_rows(sky_row, sky_row + 3 * p->sky_across, (float)(y % SKY_SPACING) / SKY_SPACING, 3 * p->sky_across, sky);
+    memcpy(coarse + 4 * p->across, coarse + 4 * (p->across - 1), 4 * sizeof *coarse); /* beyond the last */
+    for (int x = 0; x < p->width; x++) {
+        const float *near = coarse + 4 * (x / s), *behind = sky + 3 * (x / SKY_SPACING);
+        const float part = (float)(x % s) / (float)s, sky_part = (float)(x % SKY_SPACING) / SKY_SPACING;
+        float *to = p->rgba + 4 * ((size_t)y * (size_t)p->width + (size_t)x), seen[4];
+        for (int k = 0; k < 4; k++)
+            seen[k] = near[k] + part * (near[4 + k] - near[k]);
+        if (!p->quick && !agree(p, x, y, seen))
+            look(p, x, y, seen, steps, fetches);
+        for (int k = 0; k < 3; k++)
+            to[k] = seen[k] + seen[3] * (behind[k] + sky_part * (behind[3 + k] - behind[k]));
+        to[3] = 1 - seen[3];
     }
 }
 
@@ -317,39 +358,6 @@ static bool has_cloud(const painter *p, int x, int y)
 {
     const gl_tiles *tiles = p->frame->tiles;
     return tiles->texels[4 * (size_t)(y / TILE * tiles->columns + x / TILE) + 1] > 0;
-}
-
-/* From the neighbours of the first pass; false where they do not agree. */
-static bool fill(const painter *p, int x, int y, float to[4])
-{
-    const int x0 = x / p->stride, y0 = y / p->stride, x1 = least_int(x0 + (x % p->stride > 0), p->across - 1),
-              y1 = least_int(y0 + (y % p->stride > 0), p->down - 1);
-    const float fx = (float)(x % p->stride) / (float)p->stride,
-                fy = (float)(y % p->stride) / (float)p->stride;
-    const float *at[4] = {
-        p->coarse + 4 * (size_t)(y0 * p->across + x0), p->coarse + 4 * (size_t)(y0 * p->across + x1),
-        p->coarse + 4 * (size_t)(y1 * p->across + x0), p->coarse + 4 * (size_t)(y1 * p->across + x1)};
-    float low[4], high[4];
-    for (int k = 0; k < 4; k++) {
-        float below = at[0][k] + fx * (at[1][k] - at[0][k]), above = at[2][k] + fx * (at[3][k] - at[2][k]);
-        to[k] = below + fy * (above - below);
-        low[k] = least(least(at[0][k], at[1][k]), least(at[2][k], at[3][k]));
-        high[k] = most(most(at[0][k], at[1][k]), most(at[2][k], at[3][k]));
-    }
-    return most(high[3] - low[3], (high[1] - low[1]) / (to[1] + to[3] + 0.02f)) <= AGREEMENT;
-}
-
-static void paint_row(const painter *p, int y, long *steps, long *fetches)
-{
-    for (int x = 0; x < p->width; x++) {
-        float *to = p->rgba + 4 * ((size_t)y * (size_t)p->width + (size_t)x), seen[4] = {0, 0, 0, 1}, sky[3];
-        if (has_cloud(p, x, y) && !fill(p, x, y, seen) && !p->quick)
-            look(p, x, y, seen, steps, fetches);
-        sky_behind(p, x, y, sky);
-        for (int k = 0; k < 3; k++)
-            to[k] = seen[k] + seen[3] * sky[k];
-        to[3] = 1 - seen[3];
-    }
 }
 
 static void paint(const painter *p, const shape_sky *sky, double *steps, double *fetches)
@@ -376,7 +384,7 @@ static void paint(const painter *p, const shape_sky *sky, double *steps, double 
             }
 #pragma omp for schedule(dynamic, 4)
         for (int y = 0; y < p->height; y++)
-            paint_row(p, y, &step_sum, &fetch_sum);
+            paint_row(p, y, p->rows + (size_t)omp_get_thread_num() * row_floats(p), &step_sum, &fetch_sum);
     }
     *steps = (double)step_sum;
     *fetches = (double)fetch_sum;
@@ -470,7 +478,8 @@ shape_status gl_early_draw(shape_gl_renderer *r, const gl_grids *grids, const gl
     p.sky = malloc(sizeof *p.sky * 3 * (size_t)p.sky_across * (size_t)p.sky_down);
     p.coarse = malloc(sizeof *p.coarse * 4 * (size_t)p.across * (size_t)p.down);
     p.rgba = malloc(sizeof *p.rgba * 4 * (size_t)p.width * (size_t)p.height);
-    shape_status status = clouds && p.sky && p.coarse && p.rgba ? SHAPE_OK : shape_error_memory(error);
+    p.rows = malloc(sizeof *p.rows * row_floats(&p) * (size_t)omp_get_max_threads());
+    shape_status status = clouds && p.sky && p.coarse && p.rows && p.rgba ? SHAPE_OK : shape_error_memory(error);
     if (!status) {
         shape_sky sky = r->sky;
         if (r->options.no_background)
@@ -484,6 +493,7 @@ shape_status gl_early_draw(shape_gl_renderer *r, const gl_grids *grids, const gl
     free(clouds);
     free(p.sky);
     free(p.coarse);
+    free(p.rows);
     free(p.rgba);
     return status;
 }

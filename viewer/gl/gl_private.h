@@ -52,6 +52,8 @@ typedef struct gl_scene {
 enum { GL_RECORD_TEXELS = 36 }; /* SHAPE_RECORD_TEXELS */
 
 shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_error *error);
+/* The noise, where the shaders evaluate it: of all methods but the default one. */
+void gl_scene_load_noise(gl_scene *scene, const shape_noise *noise);
 /* Rewrites the records for an eye (each cloud's frame is taken relative to it, in double precision) and uploads them;
  * clouds out of the view's sight are left out. */
 void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape_camera *camera);
@@ -345,6 +347,8 @@ shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, boo
 
 /* Before a picture: makes what it needs, or, in the background, something coarse, with the rest to come. */
 shape_status gl_refine(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
+/* Sends the voxels in use to the GPU, where that has not been done. */
+shape_status gl_refine_send(shape_gl_renderer *renderer, shape_error *error);
 /* Waits for the thread and throws away what it made. */
 void gl_refine_stop(shape_gl_renderer *renderer);
 

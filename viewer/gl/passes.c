@@ -54,7 +54,7 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     shape_status status = SHAPE_OK;
     if (options->method == SHAPE_GL_DEFAULT && !made->options.early)
         status = gl_preview_compile(made, GL_PREVIEW_PROGRAMS, error);
-    if (!status)
+    if (!status && !made->options.early)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
         status = gl_program_create(folder, whole, "view/copy.frag", "", &made->copy, error);
@@ -191,6 +191,8 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     shape_status status = prepare_program(renderer, error);
     if (!status)
         status = gl_scene_load(&renderer->scene, volume, error);
+    if (!status && renderer->options.method != SHAPE_GL_DEFAULT)
+        gl_scene_load_noise(&renderer->scene, volume->noise);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
         status = gl_volumes_load(&renderer->scene, volume, error);
     if (!status && !is_paper(renderer))
@@ -248,8 +250,8 @@ static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int 
                                largest, largest);
     static const float nothing[4];
     shape_status status = gl_target_make(&renderer->mean, width, height, true, error);
-    for (int i = 0; i < 2 && !status;
-         i++) /* what is drawn first is blended with it, though it counts nothing */
+    /* What is drawn first is blended with it, though it counts nothing; what is painted is not. */
+    for (int i = 0; i < 2 && !status && !renderer->early; i++)
         glClearBufferfv(GL_COLOR, i, nothing);
     if (!status && renderer->options.method == SHAPE_GL_DEFAULT)
         status = gl_preview_resize(&renderer->preview, width, height, error);
@@ -349,7 +351,12 @@ static shape_status draw_early(shape_gl_renderer *renderer, const gl_grids *grid
 {
     shape_status status = SHAPE_OK;
     if (renderer->early_drawn)
+        status = gl_refine_send(renderer, error);
+    if (renderer->early_drawn && !status) {
+        gl_baked_place(grids->baked, &renderer->scene);
+        gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
         status = gl_preview_warm(renderer, grids, frame, error);
+    }
     renderer->early_drawn = true;
     return status ? status : gl_early_draw(renderer, grids, frame, error);
 }
@@ -383,10 +390,10 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
 {
     const shape_gl_part whole = {0, 0, view->width, view->height};
     const shape_gl_part *part = renderer->part.width ? &renderer->part : &whole;
+    renderer->early = moving && is_early(renderer);
     shape_status status = prepare_targets(renderer, part->width, part->height, error);
     if (!moving)
         renderer->fade_left = 0; /* a picture at rest is of the last grids alone */
-    renderer->early = moving && is_early(renderer);
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)
@@ -485,6 +492,9 @@ shape_status shape_gl_read(shape_gl_renderer *renderer, float *rgba, shape_error
 
 void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width, int height)
 {
+    if (!renderer->tonemap && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
+                                                "view/tonemap.frag", "", &renderer->tonemap, NULL))
+        return;
     glViewport(0, 0, width, height);
     glUseProgram(renderer->tonemap);
     gl_bind(renderer->tonemap, "accumulated", 0, GL_TEXTURE_2D, renderer->mean.textures[0]);
@@ -535,6 +545,7 @@ shape_status shape_gl_densities(shape_gl_renderer *renderer, const shape_vec3 *p
         /* A camera that sees everything: the records are wanted, not the view. */
         shape_camera camera = {view.eye, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         camera.right = camera.up = shape_dvec3_make(0, 0, 0);
+        gl_scene_load_noise(&renderer->scene, renderer->volume->noise);
         glUseProgram(renderer->density);
         glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
         glViewport(0, 0, WIDTH, rows);

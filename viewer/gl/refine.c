@@ -241,9 +241,18 @@ static shape_status make_now(shape_gl_renderer *r, const gl_order *order, shape_
         if (!r->options.background) /* places do not depend on what was there before */
             gl_pool_free(&r->pool);
         take_baked(r, made.baked);
-        status = send(r, made.baked, SIZE_MAX, order->texture_limit, &all, error);
+        if (!r->early || r->early_drawn) /* the very first picture needs none */
+            status = send(r, made.baked, SIZE_MAX, order->texture_limit, &all, error);
     }
     return status;
+}
+
+shape_status gl_refine_send(shape_gl_renderer *r, shape_error *error)
+{
+    GLint largest = 256;
+    bool all;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    return send(r, r->grids.baked, SIZE_MAX, largest, &all, error);
 }
 
 static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
