@@ -12,7 +12,7 @@
 
 enum { TILE = 32, SKY_SPACING = 8, MOST = 12 }; /* as in the shaders; clouds that are marched along one ray */
 
-static const float AGREEMENT = 0.1f, TRANSMITTANCE_END = 4e-3f, STEP_SCALE = 1.5f, STEP_DEPTH = 0.25f,
+static const float AGREEMENT = 0.2f, TRANSMITTANCE_END = 4e-3f, STEP_SCALE = 1.5f, STEP_DEPTH = 0.4f,
                    STEP_DEEP = 2;
 
 /* One shown cloud's grids; t along a ray is in metres of the world. */

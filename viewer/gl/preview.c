@@ -8,7 +8,7 @@
 enum { SKY_SPACING = 8 }; /* as in shaders/view/sky_picture.glsl */
 
 /* How far a pixel's neighbours may differ, in transmittance or relative brightness, for it to be their mean. */
-static const float AGREEMENT = 0.1f;
+static const float AGREEMENT = 0.2f;
 
 /* Program number i, in the order in which they are compiled. */
 static GLuint *program_number(gl_preview *preview, int i)
@@ -105,7 +105,12 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     gl_set_air(r, program, pass->frame->camera->origin);
     gl_bind(program, "sky_picture", 14, GL_TEXTURE_2D, r->preview.sky_picture.textures[0]);
     gl_set_float(program, "pixel_stride", (float)stride);
-    gl_set_float(program, "step_deep", pass->frame->moving ? 2.0f : 0.0f);
+    if (pass->frame->moving) { /* coarser steps than gl_set_method's: a still view's picture is 0.5 % from theirs */
+        gl_set_float(program, "step_deep", 2);
+        gl_set_float(program, "step_depth", 0.4f);
+    } else {
+        gl_set_float(program, "step_deep", 0);
+    }
     glUniform2f(glGetUniformLocation(program, "target_size"), (float)((r->width + stride - 1) / stride),
                 (float)((r->height + stride - 1) / stride));
 }
