@@ -38,7 +38,7 @@ typedef struct painter {
     int stride; /* pixels from a ray of the first pass to the next */
     bool quick; /* of four pixels, and what lies between them is taken from these whether they agree or not */
     float *sky, *coarse; /* 3 and 4 numbers a texel: radiance; radiance without the sky, transmittance */
-    float *rows; /* scratch, row_floats a thread */
+    float *rows;         /* scratch, row_floats a thread */
     float *rgba;         /* rows from below */
 } painter;
 
@@ -315,8 +315,10 @@ static bool agree(const painter *p, int x, int y, const float mean[4])
 {
     const int s = p->stride, x0 = x / s, y0 = y / s, x1 = least_int(x0 + (x % s > 0), p->across - 1),
               y1 = least_int(y0 + (y % s > 0), p->down - 1);
-    const float *a = p->coarse + 4 * (size_t)(y0 * p->across + x0), *b = p->coarse + 4 * (size_t)(y0 * p->across + x1),
-                *c = p->coarse + 4 * (size_t)(y1 * p->across + x0), *d = p->coarse + 4 * (size_t)(y1 * p->across + x1);
+    const float *a = p->coarse + 4 * (size_t)(y0 * p->across + x0),
+                *b = p->coarse + 4 * (size_t)(y0 * p->across + x1),
+                *c = p->coarse + 4 * (size_t)(y1 * p->across + x0),
+                *d = p->coarse + 4 * (size_t)(y1 * p->across + x1);
     float apart[2];
     for (int k = 0; k < 2; k++) { /* green, transmittance */
         const int v = 1 + 2 * k;
@@ -338,7 +340,8 @@ static void paint_row(const painter *p, int y, float *coarse, long *steps, long 
     const float *sky_row = p->sky + 3 * (size_t)(y / SKY_SPACING) * (size_t)p->sky_across;
     mix_rows(p->coarse + 4 * (size_t)(y0 * p->across), p->coarse + 4 * (size_t)(y1 * p->across),
              (float)(y % s) / (float)s, 4 * p->across, coarse);
-    mix_rows(sky_row, sky_row + 3 * p->sky_across, (float)(y % SKY_SPACING) / SKY_SPACING, 3 * p->sky_across, sky);
+    mix_rows(sky_row, sky_row + 3 * p->sky_across, (float)(y % SKY_SPACING) / SKY_SPACING, 3 * p->sky_across,
+             sky);
     memcpy(coarse + 4 * p->across, coarse + 4 * (p->across - 1), 4 * sizeof *coarse); /* beyond the last */
     for (int x = 0; x < p->width; x++) {
         const float *near = coarse + 4 * (x / s), *behind = sky + 3 * (x / SKY_SPACING);
@@ -479,7 +482,8 @@ shape_status gl_early_draw(shape_gl_renderer *r, const gl_grids *grids, const gl
     p.coarse = malloc(sizeof *p.coarse * 4 * (size_t)p.across * (size_t)p.down);
     p.rgba = malloc(sizeof *p.rgba * 4 * (size_t)p.width * (size_t)p.height);
     p.rows = malloc(sizeof *p.rows * row_floats(&p) * (size_t)omp_get_max_threads());
-    shape_status status = clouds && p.sky && p.coarse && p.rows && p.rgba ? SHAPE_OK : shape_error_memory(error);
+    shape_status status =
+        clouds && p.sky && p.coarse && p.rows && p.rgba ? SHAPE_OK : shape_error_memory(error);
     if (!status) {
         shape_sky sky = r->sky;
         if (r->options.no_background)

@@ -105,7 +105,8 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     gl_set_air(r, program, pass->frame->camera->origin);
     gl_bind(program, "sky_picture", 14, GL_TEXTURE_2D, r->preview.sky_picture.textures[0]);
     gl_set_float(program, "pixel_stride", (float)stride);
-    if (pass->frame->moving) { /* coarser steps than gl_set_method's: a still view's picture is 0.5 % from theirs */
+    if (pass->frame
+            ->moving) { /* coarser steps than gl_set_method's: a still view's picture is 0.5 % from theirs */
         gl_set_float(program, "step_deep", 2);
         gl_set_float(program, "step_depth", 0.4f);
     } else {
