@@ -49,6 +49,12 @@ foreach(program ${NEPHELE_PROGRAMS})
   install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endforeach()
 
+# What neph-view loads when it is given a .vdb.
+if(TARGET neph-view)
+  install(TARGETS nephele_openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/nephele COMPONENT programs)
+  set_property(TARGET neph-view APPEND PROPERTY INSTALL_RPATH "$ORIGIN/${library_from_bin}/nephele")
+endif()
+
 # --- manual pages and completion, printed by the programs themselves from their option tables
 set(NEPHELE_PAGES "")
 if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR)
