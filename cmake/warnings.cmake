@@ -25,6 +25,7 @@ if(NEPHELE_THREAD_SANITIZE)
 endif()
 if(NEPHELE_COVERAGE)
   # Atomic: rows are counted by several threads. No inlining, so that a line is counted where it stands.
+  target_compile_definitions(nephele_flags INTERFACE NEPHELE_COVERAGE)
   target_compile_options(nephele_flags INTERFACE --coverage -fprofile-update=atomic -fno-inline)
   target_link_options(nephele_flags INTERFACE --coverage)
 endif()

@@ -38,6 +38,7 @@ tutorial/6 | step 6
 tutorial/7 | step 7
 ! tutorial/blender | blend castle "--eye 0,0,60 --target 0,2.4,0 --fov 16 --sun 55,40 --sky 0.1,0.2,0.4 --size 320x160 --samples 96"
 ! viewer-methods | methods cumulus mesh
+viewer-models | models "--light grid" "--light octaves" "--light single --exposure 1.5" "--light powder --powder 1 --exposure 1.5" "--light single --ambient 0.1,0.13,0.2" "--sun 100,6 --sun-irradiance 0.5,0.25,0.15 --sky 0.03,0.045,0.09 --emission 0.7,0.22,0.05"
 ! chart | neph-chart -q --size 320x180 --runs 3 examples/scenes/bench/cumulus.json -o "$work/chart" && cp "$work/chart/chart.png" "$out"
 ! series | neph-chart -q --appendix --size 160x90 --runs 3 examples/scenes/bench/cumulus.json -o "$work/series" && cp "$work/series/series.png" "$out"
 ! growth | sh tests/bench/run.sh build/bench/bin "$work/growth" && cp "$work/growth/growth.png" "$out"
@@ -98,6 +99,21 @@ methods() {
     done
     # shellcheck disable=SC2046
     (cd "$work" && convert $(printf 'png:%s.row ' "$@") -append -define png:exclude-chunks=date,time "$out")
+}
+
+# A congestus by what neph-view can light it with, side by side.
+models() { # options of neph-view, a picture each
+    neph-gauss -q --preset congestus --seed 2 --extinction 8 --g 0.2 -o "$work/congestus.neph" || exit 1
+    row=""
+    for options in "$@"; do
+        picture="$work/model$(printf '%s' "$options" | tr -c 'a-z' _).png"
+        # shellcheck disable=SC2086
+        neph-view -q "$work/congestus.neph" --headless --size 200x240 --samples 8 --eye 0,0.1,55.2 --target 0,7.8,0.3 --fov 24 \
+            --sun 60,35 $options -o "$picture" || exit 1
+        row="$row $picture"
+    done
+    # shellcheck disable=SC2086
+    convert $row +append -define png:exclude-chunks=date,time "$out"
 }
 
 # Cycles beside our reference, by the commands of docs/vdb.md.

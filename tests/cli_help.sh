@@ -37,10 +37,10 @@ options_of()
         echo "$medium $save translate rotate scale hollow prune thin grow clip simplify primitives cloud"
         ;;
     neph-info) echo "json csv allow-outside" ;;
-    neph-render) echo "$picture $save allow-outside method spp noise rule steps light stats compare tolerance density-gain" ;;
+    neph-render) echo "$picture $save allow-outside method spp noise rule steps light powder light-octaves ambient emission stats compare tolerance density-gain" ;;
     neph-vdb) echo "resolution voxel-size half up ramp grid primitives error max-memory values grids each" ;;
     neph-chart) echo "quick size runs reference-noise allow-outside" ;;
-    neph-view) echo "$picture $save allow-outside headless method bench frames error" ;;
+    neph-view) echo "$picture $save allow-outside headless method bench frames error light powder light-octaves ambient emission" ;;
     *) return 1 ;;
     esac
 }

@@ -115,6 +115,9 @@ differs powder5 --light powder --powder 5
 cmp -s powder.exr powder5.exr && fail "--powder changes nothing"
 differs forward --light harris --forward 0.9
 cmp -s harris.exr forward.exr && fail "--forward changes nothing"
+differs octaves2 --light octaves --light-octaves 2
+cmp -s octaves.exr octaves2.exr && fail "--light-octaves changes nothing"
+differs ambient --light single --ambient 0.1,0,0
 differs emission --light single --emission 0.1,0,0
 differs silver --light single --silver
 differs lock --light single --lock 3

@@ -63,6 +63,30 @@ for method in exact paper paper-ndt; do
     ! cmp -s spiral.pfm $method.pfm || fail "--method $method drew what the default draws"
 done
 
+# --- by what the clouds are lit: each term changes the picture, what a scene keeps of it draws the same, and each stands in the
+# picture that neph-render makes with the same words
+lit="--light octaves --light-octaves 2 --ambient 0.1,0.2,0.3 --emission 0.3,0.1,0"
+for term in "--light powder" "--light powder --powder 0.5" "--light octaves" "--light octaves --light-octaves 2" \
+    "--ambient 0.1,0.2,0.3" "--emission 0.3,0.1,0"; do
+    # shellcheck disable=SC2086
+    "$bin/neph-view" spiral.neph $small $term -o lit.pfm || fail "$term failed"
+    for other in spiral lit-*; do
+        ! cmp -s lit.pfm "${other%.pfm}.pfm" || fail "$term drew what $other is"
+    done
+    cp lit.pfm "lit-$(echo "$term" | tr -d ' ').pfm"
+done
+# shellcheck disable=SC2086
+"$bin/neph-view" spiral.neph $small $lit -o lit.pfm --save-scene lit.json || fail "$lit failed"
+# shellcheck disable=SC2086
+"$bin/neph-view" lit.json $small -o again.pfm || fail "a scene with its light failed"
+cmp lit.pfm again.pfm || fail "a scene does not keep by what its clouds are lit: $(cat lit.json)"
+# shellcheck disable=SC2086
+"$bin/neph-view" lit.json $small --light grid --ambient 0,0,0 --emission 0,0,0 -o again.pfm
+cmp spiral.pfm again.pfm || fail "the command line does not go before a scene's light"
+"$bin/neph-view" spiral.neph -q --headless --size 96x54 --samples 4 $lit -o lit.pfm
+"$bin/neph-render" spiral.neph -q --size 96x54 --method march $lit -o marched.pfm
+"$bin/neph-render" --compare lit.pfm marched.pfm --tolerance 0.004 >/dev/null || fail "$lit is not neph-render's"
+
 # --- an empty cloud is sky and no error
 "$bin/neph-view" "$source/tests/fuzz/corpus/neph/empty" -q --headless --size 32x18 --samples 1 --sky 0.25,0.5,0.75 \
     -o sky.pfm ||
@@ -115,6 +139,9 @@ refused 2 flight spiral.neph --headless --flight -o x.png
 [ ! -e x.jpg ] || fail "a refused picture is there all the same"
 refused 2 method spiral.neph --headless --method fast -o x.png
 refused 2 size spiral.neph --headless --size 0x8 -o x.png
+refused 2 "light powder" spiral.neph --headless --powder 3 -o x.png
+refused 2 "light octaves" spiral.neph --headless --light powder --light-octaves 3 -o x.png
+refused 2 "2018" spiral.neph --headless --method paper --ambient 1,1,1 -o x.png
 refused 2 "same point" spiral.neph --headless --eye 1,2,3 --target 1,2,3 -o x.png
 refused 2 headless spiral.neph -o x.png
 refused 1 "no-such" no-such.neph --headless -o x.png

@@ -65,6 +65,17 @@ PATH=$bin:$PATH sh -e commands.sh 2>commands.log || fail "the screenshot's comma
 key ctrl+z
 like $seen undone start
 quit
+# The picture is a scene, and its generator is in the panel again, a line lower; the radius goes back to the scene's.
+# shellcheck disable=SC2086
+open neph-gauss-0001 neph-gauss-0001.png --size 640x300 $small
+key Tab
+shot scene
+drag 110 240 60 240
+at 620 280
+unlike $seen scene-changed scene 0.02
+key ctrl+z
+like $seen scene-undone scene
+quit
 
 # --- a scene: its own file, a cloud's, a mesh's
 printf 'v -2 0 0\nv 2 0 0\nv 2 4 0\nv -2 4 0\nf 1 2 3 4\n' >wall.obj

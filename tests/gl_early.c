@@ -66,6 +66,42 @@ static void shaders_take_over_unseen(void **state)
     }
 }
 
+/* A view that rests after its very first picture is drawn by the shaders at once, as it is later: they have all they need. */
+static void a_view_may_rest_at_once(void **state)
+{
+    (void)state;
+    shape_error error;
+    float *pictures[2] = {malloc(VALUES * sizeof(float)), malloc(VALUES * sizeof(float))};
+    assert_true(pictures[0] && pictures[1]);
+    shape_set *set = clouds(1);
+    shape_volume *volume = new_volume(set);
+    shape_light light = shape_light_defaults();
+    shape_view view = view_of(WIDTH, HEIGHT, shape_dvec3_make(0, 0.5, 8), shape_dvec3_make(0, 0, 0), 40);
+    shape_gl_options options = shape_gl_defaults();
+    shape_gl_renderer *renderer;
+    options.light.resolution = 16;
+    options.early = true;
+    must(shape_gl_create(&options, &renderer, &error), &error);
+    must(shape_gl_load(renderer, volume, &error), &error);
+    must(shape_gl_light(renderer, &light, &error), &error);
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < (i ? 6 : 1); k++)
+            must(shape_gl_draw_moving(renderer, &view, &error), &error);
+        must(shape_gl_draw(renderer, &view, 0, &error), &error);
+        must(shape_gl_read(renderer, pictures[i], &error), &error);
+    }
+    double covered = 0;
+    for (int k = 3; k < VALUES; k += 4)
+        covered += (double)pictures[0][k];
+    assert_true(covered > 100);
+    assert_memory_equal(pictures[0], pictures[1], VALUES * sizeof(float));
+    shape_gl_destroy(renderer);
+    shape_volume_destroy(volume);
+    shape_set_destroy(set);
+    free(pictures[0]);
+    free(pictures[1]);
+}
+
 /* More clouds over one another than a ray is marched through, and none at all: numbers, and nothing beyond the picture. */
 static void crowds_and_empty_skies_are_painted(void **state)
 {
@@ -111,6 +147,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(shaders_take_over_unseen),
+        cmocka_unit_test(a_view_may_rest_at_once),
         cmocka_unit_test(crowds_and_empty_skies_are_painted),
     };
     return cmocka_run_group_tests(tests, open_context, close_pictures);

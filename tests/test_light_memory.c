@@ -178,6 +178,54 @@ static shape_status bake(shape_error *error)
     return status;
 }
 
+/* As after an edit: one primitive of six has changed. */
+static shape_status make_again(shape_error *error)
+{
+    shape_baked baked;
+    shape_change change = {0};
+    shape_sunsweep *sweep = NULL, *again = NULL;
+    shape_lightgrid grid = {0}, other = {0};
+    const int cells = 8;
+    shape_sunsweep_options swept = {.threads = 1, .keep = true};
+    shape_lightgrid_options options = shape_lightgrid_defaults();
+    options.resolution = 6;
+    options.threads = 1;
+    shape_volume_cloud before = volume->clouds[0];
+    shape_primitives list = *before.shape_list;
+    list.sphere_count--;
+    before.shape_list = &list;
+    uint8_t *bricks = NULL;
+    shape_status status = shape_change_find(&before, &volume->clouds[0], &change, error);
+    if (!status)
+        status = shape_bake(&volume->clouds[0], 1, 1, &baked, error);
+    if (!status) {
+        status = shape_bake_again(&volume->clouds[0], &change, 1, (shape_stop){0}, &baked, &bricks, error);
+        shape_baked_free(&baked);
+    }
+    free(bricks);
+    if (!status)
+        status = shape_sunsweep_create_with(volume, &light, &cells, &swept, &sweep, error);
+    swept.from = sweep;
+    swept.changes = &change;
+    options.sweep = sweep;
+    if (!status)
+        status = shape_lightgrid_build(volume, 0, &light, &options, &grid, error);
+    if (!status)
+        status = shape_sunsweep_create_with(volume, &light, &cells, &swept, &again, error);
+    options.sweep = again;
+    options.from = &grid;
+    options.change = &change;
+    if (!status)
+        status = shape_lightgrid_build(volume, 0, &light, &options, &other, error);
+    shape_lightgrid_free(&grid);
+    if (!status)
+        shape_lightgrid_free(&other);
+    shape_sunsweep_destroy(sweep);
+    shape_sunsweep_destroy(again);
+    shape_change_free(&change);
+    return status;
+}
+
 static bool take_brick(void *context, const int32_t first[3], const float *values)
 {
     (void)first;
@@ -222,6 +270,7 @@ static void grids(void **state)
     (void)state;
     fail_each(make_lights, 3, 0);
     fail_each(bake, 1, 0);
+    fail_each(make_again, 10, 0);
     fail_each(fill_voxels, 3, 0);
 }
 

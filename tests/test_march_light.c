@@ -157,6 +157,42 @@ static void emission_of_a_dark_cloud(void **state)
     }
 }
 
+/* Copies of the sun's light at depth x / 2^n, each half as strong as the last, 1 in all; one copy is Beer's law. */
+static void octaves_sum_to_one(void **state)
+{
+    (void)state;
+    sample_scene scene = ball((float)SIGMA);
+    shape_light light = sun_behind(1);
+    shape_march_options options = fine(SHAPE_MARCH_OCTAVES);
+    for (int count = 1; count <= SHAPE_MARCH_OCTAVES_MAX; count++) {
+        double truth = 0, weights = 0;
+        for (int n = 0; n < count; n++) {
+            truth += ldexp(decay(1 + ldexp(1, -n)), -n);
+            weights += ldexp(1, -n);
+        }
+        options.octaves = count;
+        assert_near(look(&scene, &light, &options, 0), 0.25 * truth / weights, 1e-4);
+    }
+    sample_end(&scene);
+}
+
+/* Without sun and sky: the same radiance everywhere, of which the albedo is scattered, in every light and whatever shines
+ * besides. */
+static void ambient_light_reaches_every_point(void **state)
+{
+    (void)state;
+    shape_light light = sun_behind(1);
+    sample_scene scene = ball((float)SIGMA);
+    scene.volume->clouds[0].medium.albedo = 0.6f;
+    for (int which = SHAPE_MARCH_SINGLE; which <= SHAPE_MARCH_GRID; which++) {
+        shape_march_options options = fine((shape_march_light)which);
+        double without = look(&scene, &light, &options, 0);
+        options.ambient[0] = 0.8f;
+        assert_near(look(&scene, &light, &options, 0) - without, 0.6 * 0.8 * decay(1), 2e-4);
+    }
+    sample_end(&scene);
+}
+
 /* Thin steps scatter ahead: g = exp(-sigma step). */
 static void silver_lining(void **state)
 {
@@ -344,6 +380,14 @@ static void checks_name_what_is_wrong(void **state)
     options.emission[2] = NAN;
     assert_int_equal(shape_march_check(&options, &error), SHAPE_ERROR_ARGUMENT);
     assert_non_null(strstr(error.text, "emission"));
+    options = shape_march_defaults();
+    options.ambient[1] = -1;
+    assert_int_equal(shape_march_check(&options, &error), SHAPE_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.text, "ambient"));
+    options = shape_march_defaults();
+    options.octaves = SHAPE_MARCH_OCTAVES_MAX + 1;
+    assert_int_equal(shape_march_check(&options, &error), SHAPE_ERROR_ARGUMENT);
+    assert_non_null(strstr(error.text, "octaves"));
 }
 
 int main(void)
@@ -353,6 +397,8 @@ int main(void)
         cmocka_unit_test(harris_recurrence),
         cmocka_unit_test(two_passes),
         cmocka_unit_test(emission_of_a_dark_cloud),
+        cmocka_unit_test(octaves_sum_to_one),
+        cmocka_unit_test(ambient_light_reaches_every_point),
         cmocka_unit_test(silver_lining),
         cmocka_unit_test(shadows_by_steps_cone_and_grid),
         cmocka_unit_test(exponential_steps),

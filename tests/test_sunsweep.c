@@ -74,7 +74,7 @@ static void rows_are_their_points(void **state)
             row.low[row.axis] = -3;
             row.step = 6 / (float)row.count;
             row_u2(&list, c->support, &row, u2);
-            row_density(c, &row, u2, density);
+            row_density(c, &list, &row, u2, density);
             for (int i = 0; i < row.count; i++) {
                 p = shape_vec3_make(row.low[0], row.low[1], row.low[2]);
                 (&p.x)[row.axis] += row.step * ((float)i + 0.5f);
@@ -329,13 +329,13 @@ static void casters_are_those_of_the_double_loop(void **state)
                        reach = (double)a->radius + (double)b->radius;
                 if (across < reach && ahead > 0) {
                     assert_true(found);
-                    assert_true(shadow_may_fall(&volume->clouds[j], &volume->clouds[i], sun));
+                    assert_true(shape_sun_may_shade(&volume->clouds[j], &volume->clouds[i], sun));
                 }
                 /* A box's corner is at most the square root of 3 further than the ball's rim, and boxes seen from the
                  * sun meet by their corners once more so far away. */
                 if (across > 2.46 * reach || ahead < -1.74 * reach) {
                     assert_false(found);
-                    assert_false(shadow_may_fall(&volume->clouds[j], &volume->clouds[i], sun));
+                    assert_false(shape_sun_may_shade(&volume->clouds[j], &volume->clouds[i], sun));
                 }
             }
         shadow_pairs_free(&pairs);

@@ -125,10 +125,13 @@ static void everything_comes_back(void **state)
         s->sky_radiance[i] = 0.7f / (float)(i + 1);
         s->course.motion.wind[i] = 0.1 * i - 0.7;
         s->course.motion.drift[i] = 1.0 / (i + 3);
+        s->lighting.ambient[i] = 0.1 * (i + 1);
+        s->lighting.emission[i] = 2.0 / (i + 3);
         s->eye[i] = 1.0 / 3 + i;
         s->target[i] = 1e3 / 7 + i;
     }
     s->sky = SHAPE_SKY_CONSTANT;
+    s->lighting.law = 2;
     s->method = 1;
     s->other_method = 3;
     s->split = s->boxes = s->difference = true;
@@ -194,6 +197,8 @@ static void mistakes_are_told(void **state)
                {"{\"light-grid\": 1}", "expected a number from 2 to 256"},
                {"{\"split\": 1}", "view.split \"1\": expected true"},
                {"{\"wind\": [1, 2]}", "view.wind \"1,2\": expected three numbers"},
+               {"{\"light\": \"harris\"}", "view.light \"harris\": expected grid|single|powder"},
+               {"{\"emission\": [1, 2, -1]}", "three numbers, each from 0 to 1e+09"},
                {"{\"decay\": \"5..3\"}", "view.decay \"5..3\": expected a range"}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         char text[256];

@@ -1,15 +1,23 @@
 #!/bin/sh
 # The thread sanitizer over the unit tests of what shares work between threads, with four of them: clang's OpenMP and Archer,
 # which tells the sanitizer where OpenMP's threads wait for each other (Debian: clang, libomp-14-dev).
-#   sh tests/threads.sh [TEST]...
-# Not looked at: OpenVDB and what of the tests links it (TBB is not instrumented), and the viewer, whose driver is not.
+# Then neph-view's own threads: a test that draws, and the tests of its window, with four and two (Xvfb, xdotool).
+#   sh tests/threads.sh [TEST]...        all, or those named; "window": what is under tests/cli_window*.sh
+# Not looked at: OpenVDB and what of the tests links it (TBB is not instrumented), and the driver of OpenGL.
 set -eu
 cd "$(dirname "$0")/.."
 build=build/tsan
 [ $# -gt 0 ] || set -- test_pathtrace test_march test_march_light test_lightgrid test_paper test_opaque test_denoise \
-    test_imageerror test_interval test_density test_majorant test_simplify test_grid test_volumefit test_morph test_motion
+    test_imageerror test_interval test_density test_majorant test_simplify test_grid test_volumefit test_morph test_motion \
+    gl_preview window
 cmake --preset tsan > /dev/null
-cmake --build "$build" --target "$@" > "$build/build.log" 2>&1 || {
+targets=
+for test in "$@"; do
+    [ "$test" != window ] || test="neph-view neph-gauss neph-lsys neph-edit neph-info neph-meta neph-mesh neph-render"
+    targets="$targets $test"
+done
+# shellcheck disable=SC2086
+cmake --build "$build" --target $targets > "$build/build.log" 2>&1 || {
     tail -n 40 "$build/build.log" >&2
     exit 1
 }
@@ -37,12 +45,26 @@ clang -g -O1 -fopenmp=libomp -fsanitize=thread "$build/race.c" -o "$build/race" 
 }
 failed=
 for test in "$@"; do
+    [ "$test" != window ] || continue
     code=0
     "$build/tests/$test" > "$build/$test.log" 2>&1 || code=$?
     races=$(grep -c "WARNING: ThreadSanitizer" "$build/$test.log" || true)
     echo "$test: exit code $code, $races reports"
     [ "$code" = 0 ] || failed="$failed $test"
 done
+case " $* " in
+*" window "*)
+    for test in cli_window cli_window_files; do
+        rm -f "$build/$test".tsan.*
+        code=0
+        OMP_NUM_THREADS=2 TSAN_OPTIONS="$TSAN_OPTIONS log_path=$PWD/$build/$test.tsan" \
+            sh "tests/$test.sh" "$PWD/$build/bin" "$PWD" > "$build/$test.log" 2>&1 || code=$?
+        races=$(cat "$build/$test".tsan.* 2> /dev/null | grep -c "WARNING: ThreadSanitizer" || true)
+        echo "$test: exit code $code, $races reports"
+        [ "$code$races" = 00 ] || failed="$failed $test"
+    done
+    ;;
+esac
 [ -z "$failed" ] || {
     echo "threads.sh: failed:$failed (see $build/NAME.log)" >&2
     exit 1

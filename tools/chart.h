@@ -35,7 +35,7 @@ typedef struct chart_setting {
     chart_method method;
     shape_rule rule;
     int steps; /* along the longest side of all clouds */
-    shape_march_light light;
+    shape_march_light light; /* of CHART_GL and CHART_GL_EXACT: single, powder, octaves or grid */
     shape_march_shadow shadow;
     shape_march_jitter jitter;
     int cells;   /* of the light grid's longest side */
@@ -114,7 +114,11 @@ typedef struct chart_plan {
     shape_error no_gl; /* why there is no OpenGL; its text is "" where there is */
 } chart_plan;
 
+/* --- chart_base.c --- */
+
+/* Of a clock that only goes forward. */
 double chart_seconds(void);
+/* The first bytes of the SHA-256, in hexadecimal. */
 void chart_digest(const void *bytes, size_t size, char digest[CHART_DIGEST + 1]);
 /* DIR/name; the caller frees it. */
 char *chart_path(const chart_plan *plan, const char *name);

@@ -52,7 +52,12 @@ static shape_status make_renderer(const chart_setting *setting, shape_gl_rendere
 {
     static const shape_gl_method methods[] = {SHAPE_GL_DEFAULT, SHAPE_GL_EXACT, SHAPE_GL_PAPER,
                                               SHAPE_GL_PAPER_NDT};
+    static const shape_gl_law laws[] = {[SHAPE_MARCH_SINGLE] = SHAPE_GL_LAW_SINGLE,
+                                        [SHAPE_MARCH_POWDER] = SHAPE_GL_LAW_POWDER,
+                                        [SHAPE_MARCH_OCTAVES] = SHAPE_GL_LAW_OCTAVES,
+                                        [SHAPE_MARCH_GRID] = SHAPE_GL_LAW_GRID};
     shape_gl_options options = shape_gl_defaults();
+    options.lighting.law = laws[setting->light];
     options.method = methods[setting->method - CHART_GL];
     options.light.resolution = setting->cells;
     options.bake_voxels = (size_t)setting->voxels * 1000;

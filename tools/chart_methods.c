@@ -13,7 +13,9 @@
     .method = CHART_MARCH, .rule = SHAPE_RULE_##by, .steps = count, .light = SHAPE_MARCH_##lit,              \
     .shadow = SHAPE_SHADOW_##depth, .cells = grid, .samples = 1
 #define PAPER(which, grid) .method = CHART_##which, .cells = grid, .samples = 1
-#define GL(which, grid, count) .method = CHART_##which, .cells = grid, .samples = count, .voxels = 12000
+#define GL(which, grid, count) GL_LIT(which, grid, count, GRID)
+#define GL_LIT(which, grid, count, lit)                                                                      \
+    .method = CHART_##which, .cells = grid, .samples = count, .voxels = 12000, .light = SHAPE_MARCH_##lit
 #define QUICK .quick = true
 /* NOLINTEND(bugprone-macro-parentheses) */
 
@@ -94,10 +96,13 @@ const chart_setting chart_settings[] = {
     {GL(GL, 12, 1)},
     {GL(GL, 24, 1), QUICK},
     {GL(GL, 96, 1)},
-    {.method = CHART_GL, .cells = 48, .samples = 1, .voxels = 1000},
-    {.method = CHART_GL, .cells = 48, .samples = 1, .voxels = 100, QUICK},
+    {.method = CHART_GL, .cells = 48, .samples = 1, .voxels = 1000, .light = SHAPE_MARCH_GRID},
+    {.method = CHART_GL, .cells = 48, .samples = 1, .voxels = 100, .light = SHAPE_MARCH_GRID, QUICK},
     {GL(GL, 48, 1), .moving = true, QUICK},
     {GL(GL, 24, 1), .moving = true},
+    {GL_LIT(GL, 48, 1, SINGLE)},
+    {GL_LIT(GL, 48, 1, POWDER)},
+    {GL_LIT(GL, 48, 1, OCTAVES), QUICK},
     {GL(GL, 48, 1), .octaves = 3},
     {GL(GL, 48, 1), .change = CHART_PRUNED},
     {GL(GL, 48, 1), .change = CHART_HALVED},
@@ -165,6 +170,8 @@ static bool has_cells(const chart_setting *s)
 /* What both texts end by. */
 static void add_common(const chart_setting *s, char *text)
 {
+    if ((s->method == CHART_GL || s->method == CHART_GL_EXACT) && s->light != SHAPE_MARCH_GRID)
+        add(text, "light=%s", light_names[s->light]);
     if (s->jitter)
         add(text, "jitter=%s", jitter_names[s->jitter]);
     if (s->samples > 1)

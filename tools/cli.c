@@ -1,156 +1,16 @@
-/* Options, streams, exit codes. The option table drives popt, the ranges, --help and the provenance line. */
+/* A program's command line: the option table drives popt, the ranges, --help and the provenance line. */
 #include "cli.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <popt.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "cli_private.h"
-
-/* One process, one command line: what cli_error, cli_say and cli_made_by need later. */
-static const char *program_name = "neph";
-static bool be_quiet;
-static char error_place[512];
-
-/* One line, whatever stands in it: names of files and texts of options may hold line breaks and a terminal's commands. */
-static void print_line(const char *format, va_list arguments)
-{
-    char line[8192];
-    size_t length = (size_t)snprintf(line, sizeof line, "%s: %s", program_name, error_place);
-    vsnprintf(line + length, sizeof line - length, format, arguments);
-    for (char *c = line; *c; c++)
-        *c = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
-    fprintf(stderr, "%s\n", line);
-}
-
-void cli_error(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_line(format, arguments);
-    va_end(arguments);
-}
-
-void cli_fail(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_line(format, arguments);
-    va_end(arguments);
-    exit(CLI_FAILED);
-}
-
-void cli_wrong(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    print_line(format, arguments);
-    va_end(arguments);
-    exit(*error_place ? CLI_FAILED : CLI_WRONG); /* what a file says is no wrong command */
-}
-
-void cli_set_place(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(error_place, sizeof error_place, format, arguments);
-    va_end(arguments);
-}
-
-bool cli_set_quiet(bool quiet)
-{
-    bool before = be_quiet;
-    be_quiet = quiet;
-    return before;
-}
-
-void cli_check(shape_status status, const shape_error *error)
-{
-    if (status)
-        cli_fail("%s", error->text);
-}
-
-void cli_say(const char *format, ...)
-{
-    if (be_quiet)
-        return;
-    va_list arguments;
-    va_start(arguments, format);
-    print_line(format, arguments);
-    va_end(arguments);
-}
-
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-void cli_progress(const char *what, double done)
-{
-    static double start = -1, shown = 0;
-    double time = now();
-    if (start < 0)
-        start = shown = time;
-    if (be_quiet || !isatty(STDERR_FILENO))
-        return;
-    if (done >= 1) {
-        if (shown > start)
-            fprintf(stderr, "\r\033[K");
-        start = -1;
-    } else if (time - start > 1 && time - shown > 0.1 && done > 0) {
-        fprintf(stderr, "\r%s: %s %.0f %% (%.0f s left)\033[K", program_name, what, 100 * done,
-                (time - start) * (1 - done) / done);
-        fflush(stderr);
-        shown = time;
-    }
-}
-
-const char *cli_argument_name(const cli_option *option)
-{
-    static const char *const names[] = {NULL,     "X",   "N",  "N",    "X,Y,Z", "X,Y",
-                                        "A|A..B", "WxH", NULL, "TEXT", "TEXT"};
-    return option->choices ? option->choices : names[option->kind];
-}
-
-const char *cli_help_of(const cli_program *program, const cli_option *option)
-{
-    for (const cli_help *help = program->help; help && help->name; help++)
-        if (!strcmp(help->name, option->name))
-            return help->help;
-    return option->help;
-}
-
-static void print_help(const cli_program *program)
-{
-    printf("Usage: %s [OPTION]... %s\n\n%s\n", program->name, program->arguments, program->about);
-    for (const cli_group *group = program->groups; group->title; group++) {
-        printf("\n%s:\n", group->title);
-        for (const cli_option *option = group->options; option->name; option++) {
-            char left[160], letter[6] = "";
-            const char *argument = cli_argument_name(option);
-            if (option->letter)
-                snprintf(letter, sizeof letter, "-%c, ", option->letter);
-            snprintf(left, sizeof left, "  %s--%s%s%s", letter, option->name, argument ? " " : "",
-                     argument ? argument : "");
-            if (strlen(left) > 30)
-                printf("%s\n%32s%s\n", left, "", cli_help_of(program, option));
-            else
-                printf("%-32s%s\n", left, cli_help_of(program, option));
-        }
-    }
-    if (program->examples)
-        printf("\nExamples:\n%s", program->examples);
-    printf("\nExit status: 0 done; 1 the work failed; 2 the command was wrong.\n");
-}
 
 static bool show_help, show_version, generate_given;
 static int generate_kind;
@@ -185,7 +45,7 @@ static _Noreturn void end_output(void)
 
 void cli_parse(const cli_program *program, int argc, char **argv, cli_common *common)
 {
-    program_name = program->name;
+    cli_set_program(program->name);
     hold_streams();
     signal(SIGPIPE, SIG_IGN); /* a closed pipe is an error of write(), reported like another */
     signal(SIGXFSZ, SIG_IGN); /* and so is a file that may not grow further */
@@ -235,7 +95,7 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         cli_fail("not enough memory");
     if (code < -1)
         cli_wrong("%s: %s (see --help)", poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(code));
-    be_quiet = common->quiet;
+    cli_set_quiet(common->quiet);
     if (show_help || generate_given) {
         cli_group groups[16];
         int used = 0;
@@ -246,7 +106,7 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         cli_program whole = *program;
         whole.groups = groups;
         if (show_help)
-            print_help(&whole);
+            cli_print_help(&whole);
         else
             cli_generate(common, &whole, (cli_generate_kind)generate_kind);
         end_output();

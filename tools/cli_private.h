@@ -36,6 +36,8 @@ void cli_note_given(const cli_option *option, const char *text);
  * as the variable where that is a text. */
 void cli_store(const cli_option *option, const char *text);
 
+/* The name that every line on standard error begins with. */
+void cli_set_program(const char *name);
 /* Stands before every error from now on, "sky.json: clouds[2]: ", and makes what would be a wrong command a failure: the
  * mistake is in a file. "" ends it. */
 void cli_set_place(const char *format, ...) SHAPE_PRINTF(1, 2);
@@ -50,6 +52,9 @@ const char *cli_argument_name(const cli_option *option);
 
 /* An option's line of --help; a program may have its own for a common one. */
 const char *cli_help_of(const cli_program *program, const cli_option *option);
+
+/* --help on standard output; program->groups has all options, the common ones too. */
+void cli_print_help(const cli_program *program);
 
 typedef enum cli_generate_kind { CLI_GENERATE_MAN, CLI_GENERATE_BASH, CLI_GENERATE_ZSH } cli_generate_kind;
 /* Writes a manual page or a shell's completion to common->output; program->groups has all options, the common ones

@@ -3,12 +3,10 @@
 #include <sys/types.h>
 
 #include <errno.h>
-#include <sha2.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include "chart.h"
 #include "cli.h"
@@ -54,34 +52,6 @@ static const cli_program program = {
     .max_arguments = SCENES_MOST,
     .groups = groups,
     .help = help};
-
-double chart_seconds(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
-void chart_digest(const void *bytes, size_t count, char digest[CHART_DIGEST + 1])
-{
-    uint8_t whole[SHA256_DIGEST_LENGTH];
-    SHA2_CTX context;
-    SHA256Init(&context);
-    SHA256Update(&context, bytes, count);
-    SHA256Final(whole, &context);
-    for (int i = 0; i < CHART_DIGEST / 2; i++)
-        snprintf(digest + 2 * i, 3, "%02x", whole[i]);
-}
-
-char *chart_path(const chart_plan *plan, const char *name)
-{
-    size_t room = strlen(plan->folder) + strlen(name) + 2;
-    char *path = malloc(room);
-    if (!path)
-        cli_fail("not enough memory");
-    snprintf(path, room, "%s/%s", plan->folder, name);
-    return path;
-}
 
 /* The scene's digest: its clouds' bytes, and whatever else the reference depends on. */
 static void digest_scene(const chart_plan *plan, chart_scene *scene)

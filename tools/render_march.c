@@ -5,11 +5,12 @@
 
 static struct march_values {
     int rule, stepping, jitter, end, light, shadow;
-    int64_t steps, light_steps, resolution;
-    double growth, pixels, powder, shade, forward, emission[3], lock, cutoff, alpha_power, alpha_peel;
+    int64_t steps, light_steps, resolution, octaves;
+    double growth, pixels, powder, shade, forward, emission[3], ambient[3], lock, cutoff, alpha_power,
+        alpha_peel;
     bool silver;
     bool any_given, steps_given, growth_given, pixels_given, end_given, shadow_given, light_steps_given,
-        resolution_given, powder_given, shade_given, forward_given;
+        resolution_given, powder_given, octaves_given, shade_given, forward_given;
 } values = {.rule = SHAPE_RULE_EXPONENTIAL,
             .light = SHAPE_MARCH_GRID,
             .steps = 100,
@@ -18,6 +19,7 @@ static struct march_values {
             .growth = 1.02,
             .pixels = 4,
             .powder = 2,
+            .octaves = SHAPE_MARCH_OCTAVES_MAX,
             .shade = 1,
             .forward = 0.5,
             .cutoff = 1e-8,
@@ -53,12 +55,16 @@ const cli_option render_march_options[] = {
      "cells of a light grid's longest side [48; paper 40]", &values.resolution_given, false},
     {"powder", 0, CLI_NUMBER, &values.powder, 0, 1000, "K", "of the powder lights, 1 - exp(-K depth) [2]",
      &values.powder_given, false},
+    {"light-octaves", 0, CLI_INTEGER, &values.octaves, 1, SHAPE_MARCH_OCTAVES_MAX, "N",
+     "--light octaves: copies that are summed [8]", &values.octaves_given, false},
     {"shade", 0, CLI_NUMBER, &values.shade, 0, 1, "S", "multiplies depths to the sun [1]",
      &values.shade_given, false},
     {"forward", 0, CLI_NUMBER, &values.forward, 0, 1, "F",
      "--light harris: share that is scattered on ahead [0.5]", &values.forward_given, false},
     {"emission", 0, CLI_VECTOR, values.emission, 0, 1e9, "R,G,B",
      "density 1 glows with that radiance a metre [0,0,0]", &values.any_given, false},
+    {"ambient", 0, CLI_VECTOR, values.ambient, 0, 1e9, "R,G,B",
+     "radiance that reaches every point of a cloud alike from all round [0,0,0]", &values.any_given, false},
     {"silver", 0, CLI_FLAG, &values.silver, 0, 0, NULL,
      "phase with g = 1 - opacity of a step: bright thin rims [off]", &values.any_given, false},
     {"lock", 0, CLI_NUMBER, &values.lock, 0, 1e9, "F",
@@ -75,7 +81,8 @@ bool render_march_given(void)
 {
     const struct march_values *v = &values;
     return v->any_given || v->steps_given || v->growth_given || v->pixels_given || v->end_given ||
-           v->shadow_given || v->light_steps_given || v->powder_given || v->shade_given || v->forward_given;
+           v->shadow_given || v->light_steps_given || v->powder_given || v->octaves_given || v->shade_given ||
+           v->forward_given;
 }
 
 bool render_march_resolution(int *cells)
@@ -104,6 +111,8 @@ static void check_light(bool has_things)
         cli_wrong("--light-steps: grids of light choose their own (set --light-resolution)");
     if (v->powder_given && v->light != SHAPE_MARCH_POWDER && v->light != SHAPE_MARCH_POWDER_ANGLE)
         cli_wrong("--powder goes with --light powder and powder-angle");
+    if (v->octaves_given && v->light != SHAPE_MARCH_OCTAVES)
+        cli_wrong("--light-octaves goes with --light octaves");
     if (v->shade_given && !depth && v->light != SHAPE_MARCH_HARRIS)
         cli_wrong("--shade goes with lights of a depth (not --light grid or two-pass)");
     if (v->forward_given && v->light != SHAPE_MARCH_HARRIS)
@@ -148,9 +157,12 @@ shape_march_options render_march_make(double side, const shape_view *view)
     options.share = fmin(v->pixels * 2 * tan(view->fov * 3.14159265358979 / 360) / view->height, 1);
     options.powder = v->powder;
     options.shade = v->shade;
+    options.octaves = (int)v->octaves;
     options.forward = v->forward;
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         options.emission[c] = (float)v->emission[c];
+        options.ambient[c] = (float)v->ambient[c];
+    }
     options.silver = v->silver;
     options.lock = v->lock;
     options.cutoff = v->cutoff;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "setting.h"
+#include "shape_gl.h"
 #include "state.h"
 
 typedef struct text_end {
@@ -47,7 +48,8 @@ static void add_knobs(text_end *end, const view_state *state, const view_state *
 {
     for (size_t i = 0; i < view_knob_count; i++) {
         const view_knob *knob = &view_knobs[i];
-        if (!knob->option || !strcmp(knob->group, "Air") || (knob->of != VIEW_OF_STATE) != of_cloud)
+        if (!knob->option || !strcmp(knob->group, "Air") || !strcmp(knob->group, "Light") ||
+            (knob->of != VIEW_OF_STATE) != of_cloud)
             continue;
         bool day = !strcmp(knob->group, "Day");
         if (day && !state->course.day_runs)
@@ -114,7 +116,7 @@ static void add_settings(text_end *end, const view_generator *g)
 static bool add_maker(text_end *end, const view_state *state, const view_state *base, const char *path)
 {
     const view_generator *g = &state->generator;
-    bool piped = false, made = g->which >= 0;
+    bool piped = false, made = g->which >= 0 && !g->entry; /* a scene makes its own */
     if (made) {
         add(end, "%s", view_generator_program(g));
         if (path[0])
@@ -136,6 +138,23 @@ static bool add_maker(text_end *end, const view_state *state, const view_state *
         piped = true;
     }
     return piped;
+}
+
+/* By what the clouds are lit: what is not as usual, and of a scene also what may be otherwise in it. */
+static void add_lighting(text_end *end, const view_lighting *l, bool scene)
+{
+    static const char *const laws[] = {"grid", "single", "powder", "powder-angle", "beer-max", "octaves"};
+    static const double none[3];
+    if (scene || l->law != SHAPE_GL_LAW_GRID)
+        add(end, " --light %s", laws[l->law]);
+    if (l->law == SHAPE_GL_LAW_POWDER || l->law == SHAPE_GL_LAW_POWDER_ANGLE)
+        add(end, " --powder %.9g", l->powder);
+    if (l->law == SHAPE_GL_LAW_OCTAVES)
+        add(end, " --light-octaves %d", l->octaves);
+    if (scene || memcmp(l->ambient, none, sizeof none) != 0)
+        add_vector(end, "ambient", l->ambient);
+    if (scene || memcmp(l->emission, none, sizeof none) != 0)
+        add_vector(end, "emission", l->emission);
 }
 
 static void add_light(text_end *end, const view_state *state, bool scene)
@@ -181,6 +200,8 @@ void view_command_write(const view_state *state, const view_state *base, const v
     add_vector(&end, "target", state->target);
     add(&end, " --fov %.9g --exposure %.9g", state->fov, (double)state->exposure);
     add_light(&end, state, command->scene);
+    if (state->method < SHAPE_GL_PAPER)
+        add_lighting(&end, &state->lighting, command->scene);
     view_state start;
     memcpy(&start, base, sizeof start);
     start.fov = state->fov; /* said already */

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "lighting.h"
+
 enum { QUICK_LIGHT = 14, QUICK_VOXELS = 250000 };
 
 static double now_ms(void)
@@ -16,7 +18,7 @@ static double now_ms(void)
 }
 
 shape_status view_scene_make(const view_state *state, view_shared *set, bool edited, const shape_morph *morph,
-                             view_scene **made, shape_error *error)
+                             const view_scene *before, view_scene **made, shape_error *error)
 {
     shape_set *placed;
     view_scene *scene = calloc(1, sizeof *scene);
@@ -37,6 +39,8 @@ shape_status view_scene_make(const view_state *state, view_shared *set, bool edi
         status =
             scene->placed ? shape_volume_create(placed, &scene->volume, error) : shape_error_memory(error);
     }
+    if (!status && before)
+        shape_volume_keep_boxes(scene->volume, before->volume);
     if (status)
         view_scene_drop(scene);
     else
@@ -63,11 +67,13 @@ void view_engine_free(view_engine *e)
     e->quick = quick;
 }
 
-static shape_status create(view_engine *e, const shape_gl_options *usual, shape_error *error)
+static shape_status create(view_engine *e, const shape_gl_options *usual, const shape_gl_lighting *lighting,
+                           shape_error *error)
 {
     shape_gl_options options = *usual;
     options.method = (shape_gl_method)e->method;
     options.light.resolution = e->resolution;
+    options.lighting = *lighting;
     options.light.opaque = view_things_get(e->things);
     options.background = !e->quick;
     options.early = true;
@@ -80,6 +86,7 @@ shape_status view_engine_light(view_engine *e, const shape_gl_options *usual, co
                                int method, view_scene *scene, view_things *things, shape_error *error)
 {
     int resolution = e->quick ? QUICK_LIGHT : state->light_grid;
+    shape_gl_lighting lighting = view_lighting_gl(&state->lighting);
     shape_status status = SHAPE_OK;
     if (e->gl && (e->method != method || e->resolution != resolution || e->things != things))
         view_engine_free(e);
@@ -90,7 +97,7 @@ shape_status view_engine_light(view_engine *e, const shape_gl_options *usual, co
     if (!e->gl && !e->things)
         e->things = view_things_keep(things);
     if (!e->gl)
-        status = create(e, usual, error);
+        status = create(e, usual, &lighting, error);
     shape_light light = view_state_light(state);
     if (!status && e->scene != scene) {
         status = shape_gl_load(e->gl, scene->volume, error);
@@ -98,6 +105,8 @@ shape_status view_engine_light(view_engine *e, const shape_gl_options *usual, co
         e->scene = scene;
         scene->uses++;
     }
+    if (!status)
+        status = shape_gl_set_lighting(e->gl, &lighting, error);
     if (!status)
         status = shape_gl_light(e->gl, &light, error);
     if (status)

@@ -12,9 +12,10 @@ typedef struct view_scene {
     int uses;
 } view_scene;
 
-/* Places the set as the state says, at the state's time. edited: by what was changed of the clouds, too. */
+/* Places the set as the state says, at the state's time. edited: by what was changed of the clouds, too. before: NULL, or what
+ * was shown until now, whose clouds' boxes stay where they can (shape_volume_keep_boxes). */
 shape_status view_scene_make(const view_state *state, view_shared *set, bool edited, const shape_morph *morph,
-                             view_scene **made, shape_error *error);
+                             const view_scene *before, view_scene **made, shape_error *error);
 void view_scene_drop(view_scene *scene); /* NULL is allowed */
 
 /* One renderer and how far it is. Zeroed: none yet. */

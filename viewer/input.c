@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli_volume.h"
+#include "entry.h"
 #include "setting.h"
 #include "shape/file.h"
 #include "view.h"
@@ -67,6 +68,8 @@ view_opened view_open(const char *path, const view_generator *generator)
         cli_check(shape_scene_decode(bytes, input->size, shown, &input->scene, &error), &error);
         input->set = cli_scene_make(input->scene, path);
         opened.scene = true;
+        opened.used = view_entry_generator(input->scene);
+        view_source_fill_entry(input->scene, path, &opened.used);
     } else {
         if (view_source_decode(path, bytes, input->size, &own, NULL, &contents, mistakes, sizeof mistakes,
                                &error))

@@ -9,6 +9,7 @@
 #include "cli_scene.h"
 #include "cli_volume.h"
 #include "shape/file.h"
+#include "lighting.h"
 #include "render_opaque.h"
 #include "ready.h"
 #include "scene_file.h"
@@ -101,6 +102,7 @@ static const cli_option motion_options[] = {
 
 static const cli_group groups[] = {{"View", view_options},
                                    {"Picture", cli_picture_options},
+                                   {"Light in clouds", view_light_options},
                                    {"Opaque things", render_opaque_options},
                                    {"Time", motion_options},
                                    {"Volumes (.vdb, raw)", cli_volume_options},
@@ -418,6 +420,7 @@ static void begin_state(view_job *job)
     s->time = job->time;
     s->method = (int)job->options.method;
     s->other_method = s->method == SHAPE_GL_EXACT ? SHAPE_GL_DEFAULT : SHAPE_GL_EXACT;
+    s->lighting = view_lighting_given();
     s->samples = job->samples;
     s->light_grid = job->options.light.resolution;
     s->divider = job->divider;
@@ -510,6 +513,8 @@ int main(int argc, char **argv)
     view_opened opened = view_open(job.path, &job.generator), other = {0};
     take_opened(&job, &opened);
     take_scene(&job, opened.input.scene);
+    view_lighting_check(&job.state->lighting, (int)job.options.method);
+    job.options.lighting = view_lighting_gl(&job.state->lighting);
     compared = find_compared(&job, opened.input.scene);
     if (job.other_path) {
         view_generator none = view_generator_none(job.seed);

@@ -3,6 +3,7 @@
 
 #include "panel_overlay.hpp"
 #include "setting.h"
+#include "shape_gl.h"
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -116,9 +117,9 @@ void explain_value(const char *text, void *value, const void *start, size_t size
 }
 
 // Three numbers with a unit.
-void turn_vector(const char *name, const char *text, double value[3], const double start[3], double limit)
+void turn_vector(const char *name, const char *text, double value[3], const double start[3], double low,
+                 double limit)
 {
-    double low = -limit;
     float speed = static_cast<float>(limit * 1e-4);
     ImGui::DragScalarN(name, ImGuiDataType_Double, value, 3, speed, &low, &limit, "%.3g",
                        ImGuiSliderFlags_AlwaysClamp);
@@ -181,17 +182,20 @@ void draw_setting(const view_panel_input &in, const view_setting_row &row, int i
     bool reset = ImGui::IsItemClicked(ImGuiMouseButton_Right);
     if (!was)
         ImGui::PopStyleColor();
+    const bool scene = in.base->generator.entry > 0; // there the file may give some
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("--%s: %s\nCtrl+click to type, right click to leave it to the generator", row.name,
-                          row.help);
-    if (!setting.given)
+        ImGui::SetTooltip("--%s: %s\nCtrl+click to type, right click to %s", row.name, row.help,
+                          scene ? "reset" : "leave it to the generator");
+    if (scene
+            ? setting.given == start.given && !std::memcmp(setting.number, start.number, sizeof start.number)
+            : !setting.given)
         return;
     ImGui::SameLine();
     ImGui::PushID(row.name);
     reset = ImGui::SmallButton("x") || reset;
     ImGui::PopID();
     if (reset)
-        setting = view_setting{false, {start.number[0], start.number[1], start.number[2]}};
+        setting = view_setting{scene && start.given, {start.number[0], start.number[1], start.number[2]}};
 }
 
 void draw_generator(const view_panel_input &in)
@@ -203,6 +207,8 @@ void draw_generator(const view_panel_input &in)
         return;
     if (!in.watched)
         ImGui::TextDisabled("not made again: standard input, or a morph");
+    if (g.entry)
+        ImGui::TextDisabled("makes cloud entry %d of the scene", g.entry);
     for (int i = 0; view_setting_get_row(&g, i, &row); i++)
         draw_setting(in, row, i);
     static const uint64_t one = 1;
@@ -295,6 +301,32 @@ void draw_light(const view_panel_input &in)
         turn_group("Air", in, 0);
 }
 
+// What is made of sun and sky in a cloud; docs/light.md has the laws.
+void draw_lighting(const view_panel_input &in)
+{
+    if (!section("Light in clouds"))
+        return;
+    view_lighting &l = in.state->lighting;
+    const view_lighting &start = in.base->lighting;
+    if (in.state->method >= SHAPE_GL_PAPER)
+        ImGui::TextDisabled("the methods of 2018 have their own");
+    choose("light", &l.law, "grid\0single\0powder\0powder-angle\0beer-max\0octaves\0");
+    explain_value("grid: all scatterings of sun and sky. The others are laws of the depth to the sun alone;\n"
+                  "the reference has none of them, nor what stands below",
+                  &l.law, &start.law, sizeof l.law);
+    for (size_t i = 0; i < view_knob_count; i++) {
+        const bool octaves = !std::strcmp(view_knobs[i].name, "light octaves");
+        const bool powder = l.law == SHAPE_GL_LAW_POWDER || l.law == SHAPE_GL_LAW_POWDER_ANGLE;
+        if (!std::strcmp(view_knobs[i].group, "Light") && (octaves ? l.law == SHAPE_GL_LAW_OCTAVES : powder))
+            turn_knob(view_knobs[i], in, 0);
+    }
+    turn_vector("ambient",
+                "radiance that reaches every point alike from all round:\nred, green, blue, 0 to 10",
+                l.ambient, start.ambient, 0, 10);
+    turn_vector("emission, 1/m", "of density 1, radiance a metre:\nred, green, blue, 0 to 10", l.emission,
+                start.emission, 0, 10);
+}
+
 // Of a split picture: by which method, and of which file.
 void draw_right_half(const view_panel_input &in, view_panel_wish &wish, const char *methods)
 {
@@ -339,9 +371,9 @@ void draw_time(const view_panel_input &in, view_panel_wish &wish)
     const shape_motion &start = in.base->course.motion;
     turn_vector("wind, m/s",
                 "carries the clouds with their noise:\nx (east), y (up), z (south), -1000 to 1000", wind,
-                start.wind, 1000);
+                start.wind, -1000, 1000);
     turn_vector("drift, m/s", "moves the noise through the clouds:\nx, y, z, -1000 to 1000", drift,
-                start.drift, 1000);
+                start.drift, -1000, 1000);
     wish.play = ImGui::SmallButton(in.playing ? "stop (Space)" : "play (Space)");
 }
 
@@ -445,6 +477,7 @@ void draw_panel(const view_panel_input &in, view_panel_wish &wish, const ImVec2 
     draw_generator(in);
     draw_light(in);
     draw_cloud(in);
+    draw_lighting(in);
     draw_camera(in, wish);
     draw_time(in, wish);
     draw_judging(in);

@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +24,9 @@ struct view_renderer {
     pthread_cond_t asked;
     /* Under the mutex. */
     bool stop, fresh, shoot, cancelled; /* cancelled: the picture file */
+    bool broken_off;                    /* light and density that a picture waits for */
+    const view_shared *sets[2];         /* of the wish that is being drawn, only to be compared */
+    atomic_bool hurry;                  /* what is being made is not wanted any more */
     view_request wish;
     view_shown wished;
     view_shot wish_shot;
@@ -40,6 +44,7 @@ struct view_renderer {
     uint64_t content;
     uint64_t kept; /* the content whose radiance was kept last */
     bool drawn;    /* this wish has been shown in some way */
+    bool stays;    /* an edit, of which the full engine makes only what has changed */
     GLuint textures[TARGETS], framebuffers[TARGETS];
     int sizes[TARGETS][2], next_target;
     double volume_ms;
@@ -231,6 +236,18 @@ static shape_status draw_moving(view_renderer *r, view_engine *e, view_engine *r
     return status;
 }
 
+/* After an edit that leaves most of what there is: the full engine is as quick as the other, and nothing turns coarse. */
+static shape_status draw_edit(view_renderer *r, shape_error *error)
+{
+    double pixel_ms = r->full.pixel_ms;
+    r->stays = false;
+    shape_status status = light_full(r, error);
+    if (!status)
+        status = draw_moving(r, &r->full, NULL, error);
+    r->full.pixel_ms = pixel_ms; /* this picture waited for the edit, and tells nothing */
+    return status;
+}
+
 /* Whether the engines that a picture at rest needs are ready. */
 static bool is_full(const view_renderer *r)
 {
@@ -286,9 +303,10 @@ static shape_status make_scenes(view_renderer *r, shape_error *error)
 {
     double start = now_ms();
     view_scene *next = NULL, *other = NULL;
-    shape_status status = view_scene_make(&r->now.state, r->shown.set, true, r->start.morph, &next, error);
+    shape_status status =
+        view_scene_make(&r->now.state, r->shown.set, true, r->start.morph, r->scene, &next, error);
     if (!status && r->shown.other)
-        status = view_scene_make(&r->now.state, r->shown.other, false, NULL, &other, error);
+        status = view_scene_make(&r->now.state, r->shown.other, false, NULL, r->other_scene, &other, error);
     if (status) {
         view_scene_drop(next);
         return status;
@@ -297,6 +315,8 @@ static shape_status make_scenes(view_renderer *r, shape_error *error)
     view_scene_drop(r->other_scene);
     r->scene = next;
     r->other_scene = other;
+    r->stays = r->full.gl && r->full.scene && !r->now.state.split &&
+               r->full.method == (int)r->now.state.method && shape_gl_stays(r->full.gl, next->volume);
     r->volume_ms = now_ms() - start;
     return SHAPE_OK;
 }
@@ -351,6 +371,7 @@ static bool adopt(view_renderer *r, const view_request *wish, const view_shown *
     r->sample = 0;
     r->changed = now_ms();
     r->drawn = false;
+    r->stays = false;
     if (light)
         r->quick.lit = r->quick_other.lit = false;
     if (light || grid)
@@ -385,12 +406,22 @@ static bool shot_goes_on(void *context, double done)
     return on;
 }
 
+static bool shot_ends(void *context)
+{
+    view_renderer *r = context;
+    pthread_mutex_lock(&r->mutex);
+    bool ends = r->cancelled || r->stop;
+    pthread_mutex_unlock(&r->mutex);
+    return ends;
+}
+
 static void take_shot(view_renderer *r, const view_shot *s)
 {
     shape_error error;
     char text[512];
     shape_gl_options options = r->start.options;
     options.light.opaque = view_things_get(r->shown.things);
+    options.stop = (shape_stop){shot_ends, r};
     say(r, "screenshot");
     shape_status status =
         view_shot_take(s, &r->now.state, r->scene->volume, &options, shot_goes_on, r, &error);
@@ -433,6 +464,8 @@ static shape_status step(view_renderer *r, shape_error *error)
     bool rests = now_ms() - r->changed > REST_MS;
     shape_status status = SHAPE_OK;
     if (!r->drawn && (!full || !rests)) {
+        if (r->stays)
+            return draw_edit(r, error);
         bool two = two_files(r), fine = r->full.lit && (!two || r->other.lit);
         if (!fine)
             status = light_quick(r, error);
@@ -496,6 +529,16 @@ static void tell_lost(view_renderer *r)
     r->start.wake();
 }
 
+/* What has been broken off: for a newer wish, or for good. */
+static void tell_broken_off(view_renderer *r)
+{
+    pthread_mutex_lock(&r->mutex);
+    bool for_good = r->broken_off;
+    pthread_mutex_unlock(&r->mutex);
+    if (for_good)
+        tell(r, "light and density were broken off (change anything to begin again)", true);
+}
+
 static void *render_thread(void *context)
 {
     view_renderer *r = context;
@@ -526,6 +569,10 @@ static void *render_thread(void *context)
             memcpy(wish, &r->wish, sizeof *wish);
             shown = r->wished;
             memset(&r->wished, 0, sizeof r->wished);
+            r->sets[0] = shown.set;
+            r->sets[1] = shown.other;
+            r->broken_off = false;
+            atomic_store(&r->hurry, r->stop);
         }
         if (shoot) {
             memcpy(wanted, &r->wish_shot, sizeof *wanted);
@@ -546,7 +593,10 @@ static void *render_thread(void *context)
         if (shoot)
             free(wanted->scene);
         if (!broken && !is_idle(r) && step(r, &error)) {
-            tell(r, error.text, true);
+            if (error.status == SHAPE_ERROR_STOPPED)
+                tell_broken_off(r);
+            else
+                tell(r, error.text, true);
             broken = true; /* until the next wish */
         }
         if (shape_gl_is_lost()) {
@@ -566,6 +616,11 @@ static void *render_thread(void *context)
     return NULL;
 }
 
+static bool hurries(void *context)
+{
+    return atomic_load(&((view_renderer *)context)->hurry);
+}
+
 view_renderer *view_renderer_start(const view_render_start *start, shape_error *error)
 {
     view_renderer *r = calloc(1, sizeof *r);
@@ -574,6 +629,7 @@ view_renderer *view_renderer_start(const view_render_start *start, shape_error *
         return NULL;
     }
     r->start = *start;
+    r->start.options.stop = (shape_stop){hurries, r};
     r->picture.doing = "";
     r->picture.shot_done = -1;
     r->quick.quick = r->quick_other.quick = true;
@@ -593,6 +649,7 @@ void view_renderer_stop(view_renderer *r)
         return;
     pthread_mutex_lock(&r->mutex);
     r->stop = true;
+    atomic_store(&r->hurry, true);
     pthread_cond_signal(&r->asked);
     pthread_mutex_unlock(&r->mutex);
     pthread_join(r->thread, NULL);
@@ -618,7 +675,18 @@ void view_renderer_ask(view_renderer *r, const view_request *request, const view
     memcpy(&r->wish, request, sizeof *request);
     r->fresh = true;
     r->picture.done = false;
+    if (shown->set != r->sets[0] || shown->other != r->sets[1])
+        atomic_store(&r->hurry,
+                     true); /* other wishes wait: else a slider that is dragged would never show anything */
     pthread_cond_signal(&r->asked);
+    pthread_mutex_unlock(&r->mutex);
+}
+
+void view_renderer_break_off(view_renderer *r)
+{
+    pthread_mutex_lock(&r->mutex);
+    r->broken_off = true;
+    atomic_store(&r->hurry, true);
     pthread_mutex_unlock(&r->mutex);
 }
 

@@ -68,6 +68,9 @@ void view_renderer_shoot(view_renderer *renderer, const char *path, int width, i
                          const char *comment, char *scene);
 /* Breaks off the picture file that is being made, if one is. */
 void view_renderer_cancel(view_renderer *renderer);
+/* Breaks off the light and density that the present wish waits for; the next wish begins them again. (A set that is not the
+ * one of the wish before, and the end, break them off by themselves.) */
+void view_renderer_break_off(view_renderer *renderer);
 /* Where the state asks for the difference and the picture of that content is done: its radiance in the smaller size of
  * reference.h, which the caller frees. NULL else. Once a content. */
 float *view_renderer_take_radiance(view_renderer *renderer, uint64_t content);

@@ -71,7 +71,7 @@ static void set_child(view_run *run, pid_t child)
 }
 
 /* Starts it; 0 or what went wrong. */
-static int start(char **arguments, FILE *out, FILE *err, pid_t *child)
+static int start(char **arguments, FILE *input, FILE *out, FILE *err, pid_t *child)
 {
     char path[4096];
     const char *program = cli_find_program(arguments[0], path, sizeof path);
@@ -79,7 +79,8 @@ static int start(char **arguments, FILE *out, FILE *err, pid_t *child)
     int code = posix_spawn_file_actions_init(&actions);
     if (code)
         return code;
-    code = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", 0, 0);
+    code = input ? posix_spawn_file_actions_adddup2(&actions, fileno(input), STDIN_FILENO)
+                 : posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", 0, 0);
     code = code ? code : posix_spawn_file_actions_adddup2(&actions, fileno(out), STDOUT_FILENO);
     code = code ? code : posix_spawn_file_actions_adddup2(&actions, fileno(err), STDERR_FILENO);
     code = code ? code : posix_spawnp(child, program, &actions, NULL, arguments, environ);
@@ -135,14 +136,14 @@ static void take_mistakes(const char *name, FILE *err, char *mistakes, size_t ro
         snprintf(mistakes, room, "%s ended without a word", name);
 }
 
-shape_status view_run_program(view_run *run, char **arguments, unsigned char **bytes, size_t *size,
-                              char *mistakes, size_t room, shape_error *error)
+shape_status view_run_program(view_run *run, char **arguments, FILE *input, unsigned char **bytes,
+                              size_t *size, char *mistakes, size_t room, shape_error *error)
 {
     FILE *out = tmpfile(), *err = out ? tmpfile() : NULL;
     pid_t child = 0;
     shape_status status = SHAPE_OK;
     mistakes[0] = 0;
-    int code = err ? start(arguments, out, err, &child) : errno;
+    int code = err ? start(arguments, input, out, err, &child) : errno;
     if (code) {
         status = shape_error_set(error, SHAPE_ERROR_SYSTEM,
                                  "cannot run %s: %s (it belongs beside this program, or into PATH)",

@@ -3,6 +3,7 @@
 #define NEPHELE_VIEW_RUN_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "shape/status.h"
 #include "source.h"
@@ -19,8 +20,9 @@ bool view_run_is_cancelled(view_run *run);
 
 /* Runs a program, which stands beside this one or in PATH, to its end. arguments[0] is its name; the array ends by NULL.
  * *bytes, which the caller frees, gets its output; where it fails, mistakes gets what it wrote to standard error, without
- * its name, and the status is SHAPE_ERROR_FORMAT. run may be NULL: then nobody can end it. */
-shape_status view_run_program(view_run *run, char **arguments, unsigned char **bytes, size_t *size,
-                              char *mistakes, size_t room, shape_error *error);
+ * its name, and the status is SHAPE_ERROR_FORMAT. run may be NULL: then nobody can end it. input: a file that it reads as its
+ * standard input, from where that stands; NULL: nothing. */
+shape_status view_run_program(view_run *run, char **arguments, FILE *input, unsigned char **bytes,
+                              size_t *size, char *mistakes, size_t room, shape_error *error);
 
 #endif

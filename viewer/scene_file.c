@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli_scene.h"
+#include "entry.h"
 #include "setting.h"
 #include "state_scene.h"
 
@@ -63,24 +64,17 @@ static shape_status copy_scene(writer *w)
     }
     for (size_t i = 0; !status && i < w->scene->mesh_count; i++)
         status = rename_file(w, &w->scene->meshes[i].file);
+    const view_generator *g = &w->parts->state->generator;
+    if (!status && view_entry_stands(w->parts->scene, g))
+        status = view_entry_apply(w->scene, g, w->error);
     return status;
 }
 
 static shape_status add_settings(writer *w, shape_scene_cloud *cloud)
 {
     const view_generator *g = &w->parts->state->generator;
-    view_setting_row row;
-    char text[96];
     shape_status status = shape_scene_set_text(&cloud->generator, view_generator_program(g), w->error);
-    for (int i = 0; !status && view_setting_get_row(g, i, &row); i++) {
-        if (!g->settings[i].given || (row.kind == VIEW_SETTING_FLAG && g->settings[i].number[0] == 0))
-            continue;
-        view_setting_text(&row, &g->settings[i], text, sizeof text);
-        status = shape_scene_add_option(&cloud->options, row.name,
-                                        row.kind == VIEW_SETTING_FLAG ? NULL : text, w->error);
-    }
-    snprintf(text, sizeof text, "%llu", (unsigned long long)g->seed);
-    return status ? status : shape_scene_add_option(&cloud->options, "seed", text, w->error);
+    return status ? status : view_setting_options(g, true, &cloud->options, w->error);
 }
 
 /* A scene of one file, or of what a generator makes. */

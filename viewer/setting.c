@@ -154,9 +154,65 @@ void view_setting_text(const view_setting_row *row, const view_setting *setting,
         snprintf(text, room, "%.9g,%.9g,%.9g", n[0], n[1], n[2]);
 }
 
+/* Which word of "a|b|c" a text is, or -1. */
+static int find_word(const char *words, const char *text)
+{
+    for (int place = 0;; place++) {
+        size_t length = strcspn(words, "|");
+        if (strlen(text) == length && !strncmp(words, text, length))
+            return place;
+        if (!words[length])
+            return -1;
+        words += length + 1;
+    }
+}
+
+static bool read_range(const char *text, double range[3])
+{
+    char low[64];
+    const char *dots = strstr(text, "..");
+    size_t length = dots ? (size_t)(dots - text) : strlen(text);
+    if (length >= sizeof low)
+        return false;
+    snprintf(low, sizeof low, "%.*s", (int)length, text);
+    return cli_numbers(low, 1, &range[0]) && cli_numbers(dots ? dots + 2 : text, 1, &range[1]);
+}
+
+bool view_setting_read(const view_setting_row *row, const char *text, view_setting *setting)
+{
+    double n[3] = {0};
+    bool good = !text == (row->kind == VIEW_SETTING_FLAG);
+    if (good && !text)
+        n[0] = 1;
+    else if (good && row->kind == VIEW_SETTING_CHOICE)
+        good = (n[0] = find_word(row->choices, text)) >= 0;
+    else if (good)
+        good = row->range ? read_range(text, n) : cli_numbers(text, row->count, n);
+    if (good)
+        memcpy(setting->number, n, sizeof n);
+    return good;
+}
+
+shape_status view_setting_options(const view_generator *g, bool seed, shape_scene_options *options,
+                                  shape_error *error)
+{
+    view_setting_row row;
+    char text[96];
+    shape_status status = SHAPE_OK;
+    for (int i = 0; !status && view_setting_get_row(g, i, &row); i++) {
+        bool flag = row.kind == VIEW_SETTING_FLAG;
+        if (!g->settings[i].given || (flag && g->settings[i].number[0] == 0))
+            continue;
+        view_setting_text(&row, &g->settings[i], text, sizeof text);
+        status = shape_scene_add_option(options, row.name, flag ? NULL : text, error);
+    }
+    snprintf(text, sizeof text, "%llu", (unsigned long long)g->seed);
+    return status || !seed ? status : shape_scene_add_option(options, "seed", text, error);
+}
+
 bool view_generator_same(const view_generator *a, const view_generator *b)
 {
-    bool same = a->which == b->which && a->seed == b->seed;
+    bool same = a->which == b->which && a->seed == b->seed && a->entry == b->entry && a->digest == b->digest;
     for (int i = 0; i < VIEW_SETTINGS_MAX && same; i++) {
         const view_setting *s = &a->settings[i], *t = &b->settings[i];
         same = s->given == t->given && (!s->given || !memcmp(s->number, t->number, sizeof s->number));

@@ -3,6 +3,7 @@
 #ifndef NEPHELE_VIEW_SETTING_H
 #define NEPHELE_VIEW_SETTING_H
 
+#include "shape/scene.h"
 #include "source.h"
 
 #ifdef __cplusplus
@@ -40,6 +41,11 @@ bool view_setting_get_row(const view_generator *generator, int i, view_setting_r
 int view_setting_find(const view_generator *generator, const char *name);
 /* The value as a command line has it; "" for a flag. */
 void view_setting_text(const view_setting_row *row, const view_setting *setting, char *text, size_t room);
+/* The reverse; text NULL: a flag. False where it is no value of that row. */
+bool view_setting_read(const view_setting_row *row, const char *text, view_setting *setting);
+/* Adds what is given, as a scene has it, and the seed where it is wanted. */
+shape_status view_setting_options(const view_generator *generator, bool seed, shape_scene_options *options,
+                                  shape_error *error);
 /* Whether two generators make the same. */
 bool view_generator_same(const view_generator *a, const view_generator *b);
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lighting.h"
 #include "shape/file.h"
 #include "shape/scene.h"
 #include "view.h"
@@ -55,6 +56,7 @@ shape_status view_shot_take(const view_shot *s, const view_state *state, const s
     shape_gl_options options = *usual;
     options.method = (shape_gl_method)state->method;
     options.light.resolution = state->light_grid;
+    options.lighting = view_lighting_gl(&state->lighting);
     options.no_background = s->alpha;
     options.background = false;
     shape_status status = shape_gl_create(&options, &gl, error);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli_scene.h"
+#include "entry.h"
 #include "run.h"
 #include "setting.h"
 #include "shape/file.h"
@@ -203,7 +204,7 @@ static shape_status run_generator(const char *path, view_run *run, view_contents
         arguments[count++] = (char *)path;
     unsigned char *bytes;
     size_t size;
-    shape_status status = view_run_program(run, arguments, &bytes, &size, mistakes, room, error);
+    shape_status status = view_run_program(run, arguments, NULL, &bytes, &size, mistakes, room, error);
     if (status)
         return status;
     status = shape_neph_decode(bytes, size, &contents->set, error);
@@ -213,33 +214,102 @@ static shape_status run_generator(const char *path, view_run *run, view_contents
     return status;
 }
 
-/* A scene: light, camera and things are read here, its clouds made by a program that can be ended, and that may end by
- * a mistake in any of its files. */
-static shape_status read_scene(const char *path, const unsigned char *bytes, size_t size, view_run *run,
-                               view_contents *contents, char *mistakes, size_t room, shape_error *error)
+static void fill_by_grammar(const char *path, view_generator *used)
+{
+    unsigned char *bytes;
+    size_t size;
+    shape_grammar *grammar;
+    shape_error error;
+    shape_mistakes *found = malloc(sizeof *found);
+    if (!found || shape_file_read(path, MAX_SET_FILE, &bytes, &size, &error)) {
+        free(found);
+        return;
+    }
+    if (!shape_grammar_parse(bytes, size, path, &grammar, found, &error)) {
+        shape_derive_options options = shape_derive_defaults(grammar);
+        use_settings(used, &options);
+        shape_grammar_destroy(grammar);
+    }
+    free(bytes);
+    free(found);
+}
+
+void view_source_fill_entry(const shape_scene *scene, const char *path, view_generator *used)
+{
+    char *file;
+    shape_error error;
+    if (!used->entry || strcmp(view_generator_program(used), "neph-lsys") ||
+        !scene->clouds[used->entry - 1].input ||
+        shape_scene_find_file(path, scene->clouds[used->entry - 1].input, cli_outside_allowed(), &file,
+                              &error))
+        return;
+    fill_by_grammar(file, used);
+    free(file);
+}
+
+/* The scene with other options of its generator, for a program to read. */
+static shape_status changed_scene(const shape_scene *scene, const char *path, const view_generator *asked,
+                                  FILE **input, shape_error *error)
+{
+    char *text;
+    size_t size;
+    shape_status status = view_entry_text(scene, path, asked, &text, &size, error);
+    if (status)
+        return status;
+    *input = tmpfile();
+    bool good = *input && fwrite(text, 1, size, *input) == size && !fflush(*input);
+    free(text);
+    if (!good)
+        return shape_error_set(error, SHAPE_ERROR_SYSTEM, "no temporary file (is the disk full?)");
+    rewind(*input);
+    return SHAPE_OK;
+}
+
+/* The clouds of a scene, by a program that can be ended, and that may end by a mistake in any of its files. */
+static shape_status make_clouds(const char *path, const view_generator *asked, view_run *run,
+                                view_contents *contents, char *mistakes, size_t room, shape_error *error)
 {
     char left[32], *arguments[] = {(char *)"neph-edit", (char *)"-q", left, NULL, NULL, NULL, NULL};
     size_t count = 3, made_size;
     unsigned char *made;
-    if (cli_outside_allowed())
+    FILE *input = NULL;
+    shape_status status = SHAPE_OK;
+    bool changed = view_entry_stands(contents->scene, asked) && !view_generator_same(asked, &contents->used);
+    if (changed)
+        status = changed_scene(contents->scene, path, asked, &input, error);
+    if (changed || cli_outside_allowed()) /* then its files have been looked for here */
         arguments[count++] = (char *)"--allow-outside";
     arguments[count++] = (char *)"--";
-    arguments[count] = (char *)path;
+    arguments[count] = changed ? (char *)"-" : (char *)path;
     snprintf(left, sizeof left, "--leave-edits=%d", VIEW_CLOUDS_MAX); /* they are the panel's */
-    contents->used = view_generator_none(contents->used.seed);
-    shape_status status = shape_scene_decode(bytes, size, path, &contents->scene, error);
     if (!status)
-        status = view_state_check_view(contents->scene, error);
-    if (status) /* the decoder has said where */
-        snprintf(mistakes, room, "%s%s%s", contents->scene ? path : "", contents->scene ? ": " : "",
-                 error->text);
-    if (!status)
-        status = view_run_program(run, arguments, &made, &made_size, mistakes, room, error);
+        status = view_run_program(run, arguments, input, &made, &made_size, mistakes, room, error);
+    if (input)
+        fclose(input);
     if (status)
         return status;
     status = shape_neph_decode(made, made_size, &contents->set, error);
     free(made);
     return status;
+}
+
+/* A scene: light, camera and things are read here. asked: what the panel wants of the generator of one of its clouds, for as
+ * long as the file says of it what it said before; contents->used gets what the file says. */
+static shape_status read_scene(const char *path, const unsigned char *bytes, size_t size,
+                               const view_generator *asked, view_run *run, view_contents *contents,
+                               char *mistakes, size_t room, shape_error *error)
+{
+    shape_status status = shape_scene_decode(bytes, size, path, &contents->scene, error);
+    if (!status)
+        status = view_state_check_view(contents->scene, error);
+    if (status) { /* the decoder has said where */
+        snprintf(mistakes, room, "%s%s%s", contents->scene ? path : "", contents->scene ? ": " : "",
+                 error->text);
+        return status;
+    }
+    contents->used = view_entry_generator(contents->scene);
+    view_source_fill_entry(contents->scene, path, &contents->used);
+    return make_clouds(path, asked, run, contents, mistakes, room, error);
 }
 
 void view_contents_free(view_contents *contents)
@@ -257,6 +327,10 @@ static shape_status read_any(const char *path, const view_generator *generator, 
 {
     unsigned char *bytes;
     size_t size;
+    view_generator none = view_generator_none(generator->seed);
+    const view_generator *asked = generator;
+    if (generator->entry) /* of a scene, which makes its clouds itself */
+        generator = &none;
     contents->used = *generator;
     if (generator->which < 0)
         contents->used = view_generator_of_path(path, generator->seed);
@@ -269,7 +343,7 @@ static shape_status read_any(const char *path, const view_generator *generator, 
         return status;
     }
     if (shape_scene_is(bytes, size))
-        status = read_scene(path, bytes, size, run, contents, mistakes, room, error);
+        status = read_scene(path, bytes, size, asked, run, contents, mistakes, room, error);
     else
         status = view_source_decode(path, bytes, size, generator, run, contents, mistakes, room, error);
     free(bytes);

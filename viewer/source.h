@@ -25,7 +25,9 @@ typedef struct view_setting {
 /* How a cloud is made: the options of neph-lsys, neph-gauss, neph-meta or neph-mesh, see setting.h. */
 typedef struct view_generator {
     int which; /* of cli_generators; -1: nothing makes it, it is read */
+    int entry; /* of the opened scene, from 1 on, whose cloud it makes; 0: the file is no scene */
     uint64_t seed;
+    uint64_t digest; /* of what that entry says in the file */
     view_setting settings[VIEW_SETTINGS_MAX];
 } view_generator;
 
@@ -44,7 +46,7 @@ typedef struct view_contents {
 /* Reads a .neph, or a grammar and derives it as neph-lsys does; or runs the generator's program, on a mesh or on nothing
  * (path ""). path "-": standard input. What it is shows in the name, else in the bytes. run may be NULL. A scene's clouds
  * are made by the program neph-edit. more: what else is opaque, or NULL; things: whether what is opaque is to be read,
- * as it always is with a scene.Mistakes of a grammar: "path:line:column: text", all of them (as far as there is room), one a line. */
+ * as it always is with a scene. Mistakes of a grammar: "path:line:column: text", all of them (as far as there is room), one a line. */
 shape_status view_source_read(const char *path, const view_generator *generator, view_run *run,
                               const view_more_things *more, bool things, view_contents *contents,
                               char *mistakes, size_t room, shape_error *error);

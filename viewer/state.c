@@ -65,6 +65,9 @@ void view_state_merge(view_state *state, const view_state *base, const view_stat
         memcpy(own.origin, n->origin, sizeof own.origin);
         memcpy(c, &own, sizeof own);
     }
+    /* A scene's entry that says something else than before. */
+    if (state->generator.entry != next->generator.entry || state->generator.digest != next->generator.digest)
+        memcpy(&state->generator, &next->generator, sizeof state->generator);
     for (int i = 0; i < VIEW_SETTINGS_MAX; i++)
         if (!state->generator.settings[i].given && !next->generator.settings[i].given) /* the file's own */
             state->generator.settings[i] = next->generator.settings[i];
@@ -188,7 +191,8 @@ bool view_state_same_light(const view_state *a, const view_state *b)
     return x.sun.x == y.sun.x && x.sun.y == y.sun.y && x.sun.z == y.sun.z && x.sky == y.sky &&
            !memcmp(x.sun_irradiance, y.sun_irradiance, sizeof x.sun_irradiance) &&
            !memcmp(x.sky_radiance, y.sky_radiance, sizeof x.sky_radiance) &&
-           x.air.visibility == y.air.visibility && x.air.height == y.air.height;
+           x.air.visibility == y.air.visibility && x.air.height == y.air.height &&
+           !memcmp(&a->lighting, &b->lighting, sizeof a->lighting);
 }
 
 /* --- undo --- */

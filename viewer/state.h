@@ -43,6 +43,14 @@ typedef enum view_outline {
 } view_outline;
 #define VIEW_OUTLINE_WORDS "none|wires|shaded"
 
+/* By what the clouds are lit (shape_gl.h: shape_gl_lighting). No gaps, since states are compared as bytes. */
+typedef struct view_lighting {
+    int law; /* shape_gl_law */
+    int octaves;
+    double powder, ambient[3], emission[3];
+} view_lighting;
+#define VIEW_LAW_WORDS "grid|single|powder|powder-angle|beer-max|octaves"
+
 typedef struct view_state {
     double eye[3], target[3]; /* metres; the camera is no part of undo */
     double fov;               /* degrees, vertical */
@@ -52,6 +60,7 @@ typedef struct view_state {
     shape_sky_kind sky;
     float sky_radiance[3];
     shape_air air;
+    view_lighting lighting;
     view_course course;
     double time;              /* seconds */
     int method, other_method; /* shape_gl_method; the second for the right half of a split picture */
@@ -80,7 +89,7 @@ shape_light view_state_light(const view_state *state);
 shape_status view_state_set(const view_state *state, const shape_set *set, const shape_morph *morph,
                             shape_set **made, shape_error *error);
 
-/* Whether two states show the same clouds (but for the time), and light them alike. */
+/* Whether two states show the same clouds (but for the time), and light them alike: by the same sun, sky and law. */
 bool view_state_same_clouds(const view_state *a, const view_state *b);
 bool view_state_same_light(const view_state *a, const view_state *b);
 

@@ -29,6 +29,11 @@ static const view_row rows[] = {
     {"right-method", ROW_WORD, AT(other_method), 0, 0, "default|exact|paper|paper-ndt"},
     {"samples", ROW_INT, AT(samples), 1, 65536, NULL},
     {"light-grid", ROW_INT, AT(light_grid), 2, 256, NULL},
+    {"light", ROW_WORD, AT(lighting.law), 0, 0, VIEW_LAW_WORDS},
+    {"powder", ROW_DOUBLE, AT(lighting.powder), 0, 1000, NULL},
+    {"light-octaves", ROW_INT, AT(lighting.octaves), 1, 8, NULL},
+    {"ambient", ROW_THREE, AT(lighting.ambient), 0, 1e9, NULL},
+    {"emission", ROW_THREE, AT(lighting.emission), 0, 1e9, NULL},
     {"split", ROW_FLAG, AT(split), 0, 0, NULL},
     {"divider", ROW_FLOAT, AT(divider), 0, 1, NULL},
     {"heat", ROW_WORD, AT(heat), 0, 0, VIEW_HEAT_WORDS},
@@ -151,6 +156,8 @@ void view_state_reset(view_state *state)
     state->sun[1] = 40;
     memcpy(state->sun_irradiance, light.sun_irradiance, sizeof state->sun_irradiance);
     state->sky = light.sky;
+    state->lighting.powder = 2;
+    state->lighting.octaves = 8;
     state->course = view_course_defaults();
     state->samples = 32;
     state->light_grid = 48;
@@ -220,8 +227,9 @@ static shape_status load_row(const view_row *row, const char *text, view_state *
         *(int *)value = find_word(row->words, text);
         return SHAPE_OK;
     case ROW_THREE:
+        snprintf(expected, sizeof expected, "three numbers, each from %.9g to %.9g", row->min, row->max);
         if (!read_numbers(row, text, 3, value))
-            return wrong(row, text, "three numbers, each from -1000 to 1000", error);
+            return wrong(row, text, expected, error);
         return SHAPE_OK;
     case ROW_DECAY:
         if (!read_decay(row, text, n))

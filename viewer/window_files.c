@@ -100,6 +100,8 @@ static void hear_own(window_state *w)
     view_state_merge(&w->state, &w->base, &next);
     view_history_merge(w->history, &w->base, &next);
     memcpy(w->base.clouds, next.clouds, sizeof next.clouds);
+    if (next.generator.entry) /* as the file has it */
+        memcpy(&w->base.generator, &next.generator, sizeof next.generator);
     w->base.cloud_count = next.cloud_count;
     w->read_ms = news.milliseconds;
     w->saved_ms = news.saved;

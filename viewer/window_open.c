@@ -42,6 +42,7 @@ static void begin_anew(window_state *w, const shape_set *set, const view_content
     if (!contents->scene || !contents->scene->target_given)
         memcpy(s->target, &view.target, sizeof s->target);
     view_state_take_set(s, set, &contents->used);
+    memcpy(&w->asked.generator, &s->generator, sizeof s->generator); /* it has just been made by that */
     if (contents->scene)
         view_state_load_edits(s, contents->scene);
     view = view_state_view(s, 1, 1);

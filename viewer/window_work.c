@@ -6,7 +6,7 @@
 
 enum { MOMENT_MS = 300 }; /* shorter work is not worth a word */
 
-/* It is done before there is any picture of the clouds, and cannot be broken off. */
+/* It is done before there is any picture of the clouds. */
 static const char light_work[] = "light and density";
 
 static bool takes_long(view_watch *watch)
@@ -35,7 +35,7 @@ bool window_work_ends(window_state *w)
 {
     double done;
     const char *what = window_work(w, &done);
-    return what && what != light_work;
+    return what != NULL;
 }
 
 bool window_break_off(window_state *w)
@@ -43,9 +43,11 @@ bool window_break_off(window_state *w)
     double done;
     const char *what = window_work(w, &done);
     char text[160];
-    if (!what || what == light_work)
+    if (!what)
         return false;
-    if (done >= 0) {
+    if (what == light_work) {
+        view_renderer_break_off(w->renderer);
+    } else if (done >= 0) {
         view_renderer_cancel(w->renderer);
         w->picture.shot_done = -1;
     } else if (takes_long(w->opening)) {

@@ -245,6 +245,7 @@ shape_status vdb_load(const char *path, const shape_vdb_read_options &options, s
     copy_name(chosen->getName(), contents.name);
     openvdb::FloatGrid::Ptr grid = to_float(file.readGrid(chosen->getName()));
     std::vector<openvdb::GridBase::Ptr> colour;
+    colour.reserve(colours.size());
     for (const std::string &name : colours)
         colour.push_back(file.readGrid(name));
     file.close();

@@ -30,6 +30,10 @@
 #endif
 #endif
 
+#ifdef NEPHELE_COVERAGE
+extern "C" void __gcov_dump(void); // gcc: writes the counts, as an end of a program does
+#endif
+
 namespace
 {
 
@@ -47,17 +51,18 @@ struct Message {
 void limit_memory(size_t bytes)
 {
 #if !defined(VDB_SANITIZED)
-    unsigned long long pages = 0;
+    char text[64] = "";
     FILE *statm = std::fopen("/proc/self/statm", "r");
     if (!statm)
         return;
-    int read = std::fscanf(statm, "%llu", &pages);
+    bool read = std::fgets(text, sizeof text, statm);
     std::fclose(statm);
+    rlim_t pages = std::strtoull(text, nullptr, 10); // the first number
     const rlim_t spare = rlim_t(64) << 20;
     struct rlimit limit;
-    if (read != 1 || getrlimit(RLIMIT_AS, &limit))
+    if (!read || getrlimit(RLIMIT_AS, &limit))
         return;
-    rlim_t wanted = rlim_t(pages) * rlim_t(sysconf(_SC_PAGESIZE)) + bytes + spare;
+    rlim_t wanted = pages * rlim_t(sysconf(_SC_PAGESIZE)) + bytes + spare;
     if (wanted < limit.rlim_cur)
         limit.rlim_cur = wanted;
     setrlimit(RLIMIT_AS, &limit);
@@ -132,6 +137,15 @@ bool send_grid(int to, const shape_grid &grid)
            send(to, grid.filled, grid.brick_count * sizeof *grid.filled);
 }
 
+// No destructors and nothing at exit: those are the other process's. Only what tests/coverage.sh counts is kept.
+[[noreturn]] void end_reader(bool sent)
+{
+#ifdef NEPHELE_COVERAGE
+    __gcov_dump();
+#endif
+    _exit(sent ? 0 : 1);
+}
+
 [[noreturn]] void be_the_reader(const char *path, size_t file_bytes, const shape_vdb_read_options &options,
                                 int to)
 {
@@ -145,7 +159,7 @@ bool send_grid(int to, const shape_grid &grid)
     static Message message; // zero
     load(path, options, message);
     if (message.error.status)
-        _exit(send(to, &message, sizeof message) ? 0 : 1);
+        end_reader(send(to, &message, sizeof message));
     const shape_grid &grid = *message.contents.grid;
     message.grid = grid;
     for (int c = 0; c < 3; c++)
@@ -154,7 +168,7 @@ bool send_grid(int to, const shape_grid &grid)
     bool sent = send(to, &message, sizeof message) && send_grid(to, grid);
     for (int c = 0; c < 3; c++)
         sent = sent && (!grid.colour[c] || send_grid(to, *grid.colour[c]));
-    _exit(sent ? 0 : 1);
+    end_reader(sent);
 }
 
 // --- this process ---

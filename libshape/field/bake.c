@@ -6,12 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "field/bake_distance.h"
 #include "field/row.h"
 
-enum {
-    BLOCK = SHAPE_BAKE_BLOCK,
-    BRICK = 2 * BLOCK
-}; /* bricks are what a thread takes and the tree is asked about */
+enum { BRICK = SHAPE_BAKE_BRICK }; /* what a thread takes and the tree is asked about */
 
 float shape_bake_voxel(const shape_volume_cloud *cloud, float wanted, size_t most)
 {
@@ -29,14 +27,14 @@ float shape_bake_voxel(const shape_volume_cloud *cloud, float wanted, size_t mos
     return voxel;
 }
 
-static shape_status lay_out(const shape_volume_cloud *cloud, float voxel, shape_baked *baked,
-                            shape_error *error)
+/* Box and size of a grid of baked->voxel. */
+static shape_status place(const shape_volume_cloud *cloud, shape_baked *baked, shape_error *error)
 {
+    const float voxel = baked->voxel;
     shape_box box = cloud->box;
     if (shape_box_is_empty(box))
         box = (shape_box){{0, 0, 0}, {voxel, voxel, voxel}};
     double count = 1;
-    baked->voxel = voxel;
     for (int axis = 0; axis < 3; axis++) {
         float low = (&box.min.x)[axis], high = (&box.max.x)[axis];
         double wanted = ceil((double)(high - low) / (double)voxel) + 2;
@@ -51,7 +49,17 @@ static shape_status lay_out(const shape_volume_cloud *cloud, float voxel, shape_
         (&baked->box.min.x)[axis] = middle - half;
         (&baked->box.max.x)[axis] = middle + half;
     }
-    baked->voxels = calloc((size_t)count, 2);
+    return SHAPE_OK;
+}
+
+static shape_status lay_out(const shape_volume_cloud *cloud, float voxel, shape_baked *baked,
+                            shape_error *error)
+{
+    baked->voxel = voxel;
+    shape_status status = place(cloud, baked, error);
+    if (status)
+        return status;
+    baked->voxels = calloc((size_t)baked->size[0] * (size_t)baked->size[1] * (size_t)baked->size[2], 2);
     return baked->voxels ? SHAPE_OK : shape_error_memory(error);
 }
 
@@ -73,7 +81,9 @@ static shape_status fill_brick(const shape_volume_cloud *cloud, const shape_bake
             points.low[1] += baked->voxel * ((float)j + 0.5f);
             points.low[2] += baked->voxel * ((float)k + 0.5f);
             row_u2(list, cloud->support, &points, u2);
-            row_density(cloud, &points, u2, density);
+            row_density(cloud, list, &points, u2, density);
+            if (list->watch.stopped)
+                return row_stopped(list, error);
             uint8_t *row = baked->voxels + 2 * (((size_t)(brick[2] * BRICK + k) * (size_t)baked->size[1] +
                                                  (size_t)(brick[1] * BRICK + j)) *
                                                     (size_t)baked->size[0] +
@@ -81,75 +91,6 @@ static shape_status fill_brick(const shape_volume_cloud *cloud, const shape_bake
             for (int i = 0; i < BRICK; i++)
                 row[2 * i] = (uint8_t)(unit * density[i] + 0.5f);
         }
-    return SHAPE_OK;
-}
-
-/* One king's-move step along an axis: each block takes the least of itself and its two neighbours plus one. Three axes
- * make one ring. */
-static void spread(const int n[3], const uint8_t *from, uint8_t *to, int stride, int axis)
-{
-    size_t total = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
-    for (size_t i = 0; i < total; i++) {
-        int place = (int)(i / (size_t)stride) % n[axis];
-        uint8_t least = from[i];
-        if (place > 0 && from[i - (size_t)stride] < least)
-            least = from[i - (size_t)stride];
-        if (place + 1 < n[axis] && from[i + (size_t)stride] < least)
-            least = from[i + (size_t)stride];
-        to[i] = least;
-    }
-}
-
-/* Rings of blocks round those with matter, up to RINGS; beyond, blocks say RINGS + 1, which is still true. */
-static void find_distances(const int n[3], uint8_t *distance, uint8_t *a, uint8_t *b)
-{
-    enum { RINGS = 24 };
-    size_t total = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
-    for (size_t i = 0; i < total; i++)
-        a[i] = distance[i]; /* 0: matter, 1: none */
-    for (int ring = 1; ring <= RINGS; ring++) {
-        spread(n, a, b, 1, 0);
-        spread(n, b, a, n[0], 1);
-        spread(n, a, b, n[0] * n[1], 2);
-        memcpy(a, b, total);
-        size_t left = 0;
-        for (size_t i = 0; i < total; i++) {
-            distance[i] = (uint8_t)(distance[i] + a[i]);
-            left += a[i];
-        }
-        if (!left)
-            break;
-    }
-}
-
-static shape_status fill_distances(shape_baked *baked, shape_error *error)
-{
-    int n[3];
-    for (int axis = 0; axis < 3; axis++)
-        n[axis] = baked->size[axis] / BLOCK;
-    size_t total = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
-    uint8_t *blocks = malloc(3 * total);
-    if (!blocks)
-        return shape_error_memory(error);
-    memset(blocks, 1, total);
-    const size_t nx = (size_t)baked->size[0], ny = (size_t)baked->size[1], nz = (size_t)baked->size[2];
-    for (size_t z = 0; z < nz; z++)
-        for (size_t y = 0; y < ny; y++) {
-            const uint8_t *row = baked->voxels + 2 * (z * ny + y) * nx;
-            uint8_t *to = blocks + ((z / BLOCK) * (size_t)n[1] + y / BLOCK) * (size_t)n[0];
-            for (size_t x = 0; x < nx; x++)
-                if (row[2 * x])
-                    to[x / BLOCK] = 0;
-        }
-    find_distances(n, blocks, blocks + total, blocks + 2 * total);
-    for (size_t z = 0; z < nz; z++)
-        for (size_t y = 0; y < ny; y++) {
-            uint8_t *row = baked->voxels + 2 * (z * ny + y) * nx;
-            const uint8_t *from = blocks + ((z / BLOCK) * (size_t)n[1] + y / BLOCK) * (size_t)n[0];
-            for (size_t x = 0; x < nx; x++)
-                row[2 * x + 1] = from[x / BLOCK];
-        }
-    free(blocks);
     return SHAPE_OK;
 }
 
@@ -168,27 +109,61 @@ static shape_volume_cloud with_fewer_octaves(const shape_volume_cloud *cloud, fl
     return copy;
 }
 
-shape_status shape_bake(const shape_volume_cloud *cloud, float voxel, int threads, shape_baked *baked,
-                        shape_error *error)
+/* One piece of work: the bricks of a grid, all or some. */
+typedef struct bricks_work {
+    const shape_volume_cloud *cloud;
+    const shape_baked *baked;
+    const uint8_t *wanted; /* a flag a brick; NULL: all, and the grid is zeroed */
+    shape_stop stop;
+} bricks_work;
+
+static void count_bricks(const shape_baked *baked, int n[3])
 {
-    memset(baked, 0, sizeof *baked);
-    if (!(voxel > 0))
-        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "a voxel of %g m (it must be above 0)",
-                               (double)voxel);
-    shape_status status = lay_out(cloud, voxel, baked, error);
-    if (status)
-        return status;
+    for (int axis = 0; axis < 3; axis++)
+        n[axis] = baked->size[axis] / BRICK;
+}
+
+static void clear_brick(const shape_baked *baked, const int brick[3])
+{
+    for (int k = 0; k < BRICK; k++)
+        for (int j = 0; j < BRICK; j++) {
+            size_t row =
+                (size_t)(brick[2] * BRICK + k) * (size_t)baked->size[1] + (size_t)(brick[1] * BRICK + j);
+            uint8_t *voxels = baked->voxels + 2 * (row * (size_t)baked->size[0] + (size_t)(brick[0] * BRICK));
+            for (int i = 0; i < BRICK; i++)
+                voxels[2 * i] = 0;
+        }
+}
+
+/* A row of bricks along x. */
+static void fill_row(const bricks_work *work, int row, row_forms *list, shape_error *error)
+{
+    int n[3];
+    count_bricks(work->baked, n);
+    for (int x = 0; x < n[0] && !error->status; x++) {
+        const int brick[3] = {x, row % n[1], row / n[1]};
+        if (work->wanted && !work->wanted[(size_t)row * (size_t)n[0] + (size_t)x])
+            continue;
+        if (work->wanted)
+            clear_brick(work->baked, brick);
+        fill_brick(work->cloud, work->baked, brick, list, error);
+    }
+}
+
+static shape_status fill_bricks(const bricks_work *work, int threads, shape_error *error)
+{
+    int n[3];
+    shape_status status = SHAPE_OK;
+    count_bricks(work->baked, n);
     threads = threads > 0 ? threads : omp_get_max_threads();
-    shape_volume_cloud coarse = with_fewer_octaves(cloud, voxel);
-    int nx = baked->size[0] / BRICK, ny = baked->size[1] / BRICK, nz = baked->size[2] / BRICK;
 #pragma omp parallel num_threads(threads)
     {
-        row_forms list = {0};
+        row_forms list = {.watch.stop = work->stop};
         shape_error own = {0};
 #pragma omp for schedule(dynamic, 1)
-        for (int row = 0; row < ny * nz; row++)
-            for (int x = 0; x < nx && !own.status; x++)
-                fill_brick(&coarse, baked, (int[3]){x, row % ny, row / ny}, &list, &own);
+        for (int row = 0; row < n[1] * n[2]; row++)
+            if (!own.status)
+                fill_row(work, row, &list, &own);
         free(list.items);
         if (own.status) {
 #pragma omp critical
@@ -199,10 +174,118 @@ shape_status shape_bake(const shape_volume_cloud *cloud, float voxel, int thread
             }
         }
     }
+    return status;
+}
+
+shape_status shape_bake_with(const shape_volume_cloud *cloud, float voxel, int threads, shape_stop stop,
+                             shape_baked *baked, shape_error *error)
+{
+    memset(baked, 0, sizeof *baked);
+    if (!(voxel > 0))
+        return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "a voxel of %g m (it must be above 0)",
+                               (double)voxel);
+    shape_status status = lay_out(cloud, voxel, baked, error);
+    if (status)
+        return status;
+    shape_volume_cloud coarse = with_fewer_octaves(cloud, voxel);
+    coarse.stop = &stop;
+    const bricks_work work = {&coarse, baked, NULL, stop};
+    status = fill_bricks(&work, threads, error);
     if (!status)
-        status = fill_distances(baked, error);
+        status = bake_distances(baked, NULL, NULL, error);
     if (status)
         shape_baked_free(baked);
+    return status;
+}
+
+shape_status shape_bake(const shape_volume_cloud *cloud, float voxel, int threads, shape_baked *baked,
+                        shape_error *error)
+{
+    return shape_bake_with(cloud, voxel, threads, (shape_stop){0}, baked, error);
+}
+
+/* --- again, after an edit --- */
+
+/* Flags the bricks that a box touches. */
+static void flag_box(const shape_baked *baked, shape_box box, uint8_t *flags)
+{
+    int n[3], first[3], last[3];
+    count_bricks(baked, n);
+    for (int axis = 0; axis < 3; axis++) {
+        /* In double precision, and a hundredth of a brick more on both sides: a brick's own place is rounded. */
+        double low = (double)(&baked->box.min.x)[axis], edge = (double)baked->voxel * BRICK;
+        first[axis] = (int)fmax(floor(((double)(&box.min.x)[axis] - low) / edge - 0.01), 0);
+        last[axis] = (int)fmin(floor(((double)(&box.max.x)[axis] - low) / edge + 0.01), n[axis] - 1);
+    }
+    for (int z = first[2]; z <= last[2]; z++)
+        for (int y = first[1]; y <= last[1]; y++)
+            for (int x = first[0]; x <= last[0]; x++)
+                flags[((size_t)z * (size_t)n[1] + (size_t)y) * (size_t)n[0] + (size_t)x] = 1;
+}
+
+static size_t brick_count(const shape_baked *baked)
+{
+    int n[3];
+    count_bricks(baked, n);
+    return (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+}
+
+/* All of it anew, with the same voxel. */
+static shape_status bake_all(const shape_volume_cloud *cloud, int threads, shape_stop stop,
+                             shape_baked *baked, uint8_t **bricks, shape_error *error)
+{
+    float voxel = baked->voxel;
+    shape_baked_free(baked);
+    shape_status status = shape_bake_with(cloud, voxel, threads, stop, baked, error);
+    if (status || !bricks)
+        return status;
+    *bricks = malloc(brick_count(baked));
+    if (!*bricks) {
+        shape_baked_free(baked);
+        return shape_error_memory(error);
+    }
+    memset(*bricks, 1, brick_count(baked));
+    return SHAPE_OK;
+}
+
+/* Whether the cloud's grid would lie where this one lies. */
+static bool lies_there(const shape_volume_cloud *cloud, const shape_baked *baked)
+{
+    shape_baked now = {.voxel = baked->voxel};
+    shape_error error;
+    return !place(cloud, &now, &error) && !memcmp(now.size, baked->size, sizeof now.size) &&
+           !memcmp(&now.box, &baked->box, sizeof now.box);
+}
+
+shape_status shape_bake_again(const shape_volume_cloud *cloud, const shape_change *change, int threads,
+                              shape_stop stop, shape_baked *baked, uint8_t **bricks, shape_error *error)
+{
+    if (bricks)
+        *bricks = NULL;
+    if (change->all || !lies_there(cloud, baked))
+        return bake_all(cloud, threads, stop, baked, bricks, error);
+    /* Which are baked; then, which differ. */
+    uint8_t *flags = calloc(brick_count(baked), 1), *differ = calloc(brick_count(baked), 1);
+    shape_status status = flags && differ ? SHAPE_OK : shape_error_memory(error);
+    for (size_t i = 0; i < change->count && !status; i++)
+        flag_box(baked, change->boxes[i], flags);
+    if (!status) {
+        shape_volume_cloud coarse = with_fewer_octaves(cloud, baked->voxel);
+        coarse.stop = &stop;
+        const bricks_work work = {&coarse, baked, flags, stop};
+        status = fill_bricks(&work, threads, error);
+    }
+    if (!status) {
+        memcpy(differ, flags, brick_count(baked));
+        status = bake_distances(baked, flags, differ, error);
+    }
+    free(flags);
+    if (status)
+        shape_baked_free(baked);
+    if (!status && bricks)
+        *bricks = differ;
+    else
+        free(differ);
     return status;
 }
 

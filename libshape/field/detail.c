@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "base/stop.h"
 #include "field/density_model.h"
 #include "field/layer.h"
 
@@ -53,12 +54,18 @@ static shape_vec3 displaced(const shape_volume_cloud *cloud, shape_vec3 p)
     return shape_vec3_add(p, shape_vec3_scale(n, reach * 0.57735027f));
 }
 
+/* Of a crowd, which lies all over the memory: a node takes as long as so many units of stop.h. */
+enum { FAR_APART = 8 };
+
 static void nearest_two(const shape_volume_cloud *cloud, shape_vec3 p, float *least, float *second)
 {
     const shape_tree *tree = cloud->detail_tree;
+    stop_watch watch = {.stop = cloud->stop ? *cloud->stop : (shape_stop){0}};
     *least = *second = INFINITY;
     for (size_t i = 0; i < tree->count;) {
         const shape_tree_node *node = &tree->nodes[i];
+        if (stop_after(&watch, FAR_APART))
+            break;
         if (!density_node_holds(node, p)) {
             i = (size_t)node->skip;
             continue;

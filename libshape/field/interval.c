@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/stop.h"
 #include "field/grid_ray.h"
 #include "shape/volume.h"
 
@@ -104,6 +105,15 @@ static void sort_candidates(shape_candidates *found)
     }
 }
 
+/* Whether to break off, after so much more work. */
+static bool stops(shape_candidates *found, size_t work)
+{
+    if (!found->stop.asked || (found->work += work) < STOP_INTERVAL)
+        return false;
+    found->work = 0;
+    return found->stop.asked(found->stop.context);
+}
+
 shape_status shape_cloud_candidates(const shape_volume_cloud *cloud, shape_ray ray, float t_min, float t_max,
                                     shape_candidates *found, shape_error *error)
 {
@@ -115,6 +125,8 @@ shape_status shape_cloud_candidates(const shape_volume_cloud *cloud, shape_ray r
         const shape_tree_node *node = &tree->nodes[i];
         float t0 = t_min, t1 = t_max;
         shape_box box = {node->min, node->max};
+        if (stops(found, 1))
+            return stop_error(error);
         if (!shape_box_intersect(box, ray, &t0, &t1)) {
             i = (size_t)node->skip;
             continue;
@@ -174,28 +186,34 @@ float shape_candidates_u2(const shape_candidates *found, size_t first, size_t en
     return least < 0 ? 0 : least;
 }
 
-static double cloud_depth(const shape_volume_cloud *cloud, shape_ray ray, const shape_candidates *found,
-                          float t_min, float t_max, float step)
+/* Adds a cloud's optical depth; false where it was broken off. */
+static bool add_depth(const shape_volume_cloud *cloud, shape_ray ray, shape_candidates *found, float t_min,
+                      float t_max, float step, double *depth)
 {
     double sum = 0;
     size_t first, next = 0;
     float t0, t1, support2 = cloud->support * cloud->support;
-    if (cloud->field.model == SHAPE_MODEL_GRID && step * shape_vec3_length(ray.direction) <= 1)
-        return shape_grid_integral(cloud->list->grid, ray.origin, ray.direction, t_min, t_max) *
-               (double)cloud->medium.extinction;
+    if (cloud->field.model == SHAPE_MODEL_GRID && step * shape_vec3_length(ray.direction) <= 1) {
+        *depth += shape_grid_integral(cloud->list->grid, ray.origin, ray.direction, t_min, t_max) *
+                  (double)cloud->medium.extinction;
+        return true;
+    }
     while (shape_candidates_join(found, t_min, t_max, &first, &next, &t0, &t1)) {
         int steps = (int)ceilf(fminf((t1 - t0) / step, 1e6f));
         steps = steps < 1 ? 1 : steps;
         float width = (t1 - t0) / (float)steps, density = 0;
         for (int i = 0; i < steps; i++) {
             float t = t0 + width * ((float)i + 0.5f);
+            if (stops(found, next - first))
+                return false;
             float u2 = shape_candidates_u2(found, first, next, support2, t);
             density += shape_cloud_density_at(
                 cloud, shape_vec3_add(ray.origin, shape_vec3_scale(ray.direction, t)), u2);
         }
         sum += (double)density * (double)width;
     }
-    return sum * (double)cloud->medium.extinction;
+    *depth += sum * (double)cloud->medium.extinction;
+    return true;
 }
 
 shape_status shape_volume_optical_depth(const shape_volume *volume, shape_dvec3 origin, shape_dvec3 direction,
@@ -212,7 +230,8 @@ shape_status shape_volume_optical_depth(const shape_volume *volume, shape_dvec3 
         shape_status status = shape_cloud_candidates(cloud, ray, t0, t1, scratch, error);
         if (status)
             return status;
-        *depth += cloud_depth(cloud, ray, scratch, t0, t1, step);
+        if (!add_depth(cloud, ray, scratch, t0, t1, step, depth))
+            return stop_error(error);
     }
     return SHAPE_OK;
 }

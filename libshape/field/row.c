@@ -40,6 +40,8 @@ shape_status row_collect(const shape_volume_cloud *cloud, shape_vec3 low, shape_
     list->count = 0;
     for (size_t i = 0; i < cloud->tree->count;) {
         const shape_tree_node *node = &cloud->tree->nodes[i];
+        if (stop_after(&list->watch, 1))
+            return stop_error(error);
         if (apart(node, low, high)) {
             i = (size_t)node->skip;
             continue;
@@ -97,11 +99,18 @@ static void lower_row(const field_row *row, float steep, float middle, float lea
     }
 }
 
-void row_u2(const row_forms *list, float support, const field_row *row, float *u2)
+shape_status row_stopped(const row_forms *list, shape_error *error)
+{
+    return list->watch.stopped ? stop_error(error) : SHAPE_OK;
+}
+
+void row_u2(row_forms *list, float support, const field_row *row, float *u2)
 {
     for (int i = 0; i < row->count; i++)
         u2[i] = INFINITY;
     for (size_t k = 0; k < list->count; k++) {
+        if (stop_after(&list->watch, 1))
+            return;
         float steep, middle, least;
         int range[2];
         if (meet_row(&list->items[k], support, row, &steep, &middle, &least, range))
@@ -229,10 +238,21 @@ static field_row part_of(const field_row *row, int first, int end)
     return part;
 }
 
-void row_density(const shape_volume_cloud *cloud, const field_row *row, const float *u2, float *density)
+/* Primitives that a density's point may look at. */
+static size_t point_work(const shape_volume_cloud *cloud, const row_forms *list)
+{
+    enum { NOISE = 16 };
+    bool all = cloud->field.model == SHAPE_MODEL_METABALL;
+    return NOISE + (all ? shape_primitives_count(cloud->list) : list->count);
+}
+
+void row_density(const shape_volume_cloud *cloud, row_forms *list, const field_row *row, const float *u2,
+                 float *density)
 {
     const float limit = cloud->support * cloud->support;
     int first = 0, end = row->count;
+    if (stop_after(&list->watch, (size_t)row->count))
+        return;
     while (first < end && !(u2[first] <= limit))
         density[first++] = 0;
     while (end > first && !(u2[end - 1] <= limit))
@@ -245,7 +265,8 @@ void row_density(const shape_volume_cloud *cloud, const field_row *row, const fl
         cut_spheroid(u2 + first, limit, cloud->field.kappa, end - first, density + first);
         return;
     }
-    for (int i = first; i < end; i++) {
+    const size_t work = point_work(cloud, list);
+    for (int i = first; i < end && !stop_after(&list->watch, work); i++) {
         shape_vec3 p = {row->low[0], row->low[1], row->low[2]};
         (&p.x)[row->axis] += row->step * ((float)i + 0.5f);
         density[i] = shape_cloud_density_at(cloud, p, u2[i]);

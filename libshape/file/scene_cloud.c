@@ -131,8 +131,9 @@ static const scene_member cloud_members[] = {
     {"note", scene_read_note, offsetof(shape_scene_cloud, note)},
     {0}};
 
-static shape_status read_cloud(scene_reader *r, const json_t *value, shape_scene *scene)
+static shape_status read_cloud(scene_reader *r, const json_t *value, void *to)
 {
+    shape_scene *scene = to;
     shape_scene_cloud *cloud;
     shape_status status = shape_scene_add_cloud(scene, &cloud, r->error);
     if (!status)
@@ -151,14 +152,5 @@ static shape_status read_cloud(scene_reader *r, const json_t *value, shape_scene
 
 shape_status scene_clouds(scene_reader *r, const json_t *value, void *to)
 {
-    if (!json_is_array(value))
-        return scene_wrong(r, "expected an array, [{...}]");
-    for (size_t i = 0; i < json_array_size(value); i++) {
-        size_t used = scene_enter(r, NULL, i);
-        shape_status status = read_cloud(r, json_array_get(value, i), to);
-        if (status)
-            return status;
-        scene_leave(r, used);
-    }
-    return SHAPE_OK;
+    return scene_read_each(r, value, read_cloud, to);
 }

@@ -36,8 +36,9 @@ static const scene_member edit_members[] = {
     {"note", scene_read_note, offsetof(shape_scene_edit, note)},
     {0}};
 
-static shape_status read_edit(scene_reader *r, const json_t *value, shape_scene *scene)
+static shape_status read_edit(scene_reader *r, const json_t *value, void *to)
 {
+    shape_scene *scene = to;
     shape_scene_edit *edit;
     if (scene->edit_count == SHAPE_SCENE_EDITS_MAX)
         return scene_wrong(r, "more than %d edits (change the files themselves)", SHAPE_SCENE_EDITS_MAX);
@@ -57,14 +58,5 @@ static shape_status read_edit(scene_reader *r, const json_t *value, shape_scene 
 
 shape_status scene_edits(scene_reader *r, const json_t *value, void *to)
 {
-    if (!json_is_array(value))
-        return scene_wrong(r, "expected an array, [{...}]");
-    for (size_t i = 0; i < json_array_size(value); i++) {
-        size_t used = scene_enter(r, NULL, i);
-        shape_status status = read_edit(r, json_array_get(value, i), to);
-        if (status)
-            return status;
-        scene_leave(r, used);
-    }
-    return SHAPE_OK;
+    return scene_read_each(r, value, read_edit, to);
 }

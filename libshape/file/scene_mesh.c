@@ -34,8 +34,9 @@ static const scene_member mesh_members[] = {
     {"note", scene_read_note, offsetof(shape_scene_mesh, note)},
     {0}};
 
-static shape_status read_mesh(scene_reader *r, const json_t *value, shape_scene *scene)
+static shape_status read_mesh(scene_reader *r, const json_t *value, void *to)
 {
+    shape_scene *scene = to;
     shape_scene_mesh *mesh;
     if (scene->mesh_count == SHAPE_SCENE_MESHES_MAX)
         return scene_wrong(r, "more than %d meshes (make the scene smaller)", SHAPE_SCENE_MESHES_MAX);
@@ -49,16 +50,7 @@ static shape_status read_mesh(scene_reader *r, const json_t *value, shape_scene 
 
 shape_status scene_meshes(scene_reader *r, const json_t *value, void *to)
 {
-    if (!json_is_array(value))
-        return scene_wrong(r, "expected an array, [...]");
-    for (size_t i = 0; i < json_array_size(value); i++) {
-        size_t used = scene_enter(r, NULL, i);
-        shape_status status = read_mesh(r, json_array_get(value, i), to);
-        if (status)
-            return status;
-        scene_leave(r, used);
-    }
-    return SHAPE_OK;
+    return scene_read_each(r, value, read_mesh, to);
 }
 
 static shape_status ground_height(scene_reader *r, const json_t *value, void *to)

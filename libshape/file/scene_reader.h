@@ -36,6 +36,9 @@ void scene_leave(scene_reader *r, size_t used);
 /* Reads each member by its row; "note" may stand in every object. */
 shape_status scene_read_object(scene_reader *r, const json_t *object, const scene_member *members, void *to);
 
+/* Reads each element of an array by `read`, to the same place. */
+shape_status scene_read_each(scene_reader *r, const json_t *array, scene_read read, void *to);
+
 shape_status scene_read_number(scene_reader *r, const json_t *value, double min, double max, double *number);
 shape_status scene_read_three(scene_reader *r, const json_t *value, double min, double max,
                               double numbers[3]);

@@ -69,6 +69,20 @@ shape_status scene_read_object(scene_reader *r, const json_t *object, const scen
     return SHAPE_OK;
 }
 
+shape_status scene_read_each(scene_reader *r, const json_t *array, scene_read read, void *to)
+{
+    if (!json_is_array(array))
+        return scene_wrong(r, "expected an array, [{...}]");
+    for (size_t i = 0; i < json_array_size(array); i++) {
+        size_t used = scene_enter(r, NULL, i);
+        shape_status status = read(r, json_array_get(array, i), to);
+        if (status)
+            return status;
+        scene_leave(r, used);
+    }
+    return SHAPE_OK;
+}
+
 shape_status scene_read_number(scene_reader *r, const json_t *value, double min, double max, double *number)
 {
     if (!json_is_number(value))

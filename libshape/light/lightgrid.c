@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "field/row.h"
+#include "light/lightgrid_density.h"
+#include "light/lightgrid_layout.h"
 #include "light/ordinates.h"
 #include "light/sunsweep.h"
 #include "shape/phase.h"
@@ -26,45 +27,6 @@ void shape_delta_scaling(float g, float *share, float *rest)
 {
     *share = g > 0 ? g * g : 0;
     *rest = g > 0 ? g / (1 + g) : g;
-}
-
-/* A grid of nearly cubic cells (flat ones for a thin layer) around the cloud's box and a cell more on every side, so that
- * its border is clear air. */
-void lightgrid_lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid)
-{
-    shape_box box = cloud->box;
-    if (shape_box_is_empty(box))
-        box = (shape_box){{0, 0, 0}, {1, 1, 1}};
-    const int fewest = resolution / 4;
-    float *min = &box.min.x, *max = &box.max.x, longest = 0, reach = 1e-30f;
-    for (int axis = 0; axis < 3; axis++) {
-        longest = fmaxf(longest, max[axis] - min[axis]);
-        reach = fmaxf(reach, fmaxf(fabsf(min[axis]), fabsf(max[axis])));
-    }
-    /* Far from its frame's origin a cloud is no thicker than a float's step; a cell must be. */
-    float cell = fmaxf(longest / (float)(resolution > 3 ? resolution - 2 : 1), reach * 1e-6f);
-    for (int axis = 0; axis < 3; axis++) {
-        int inner = (int)ceilf((max[axis] - min[axis]) / cell * 0.9999f);
-        float edge = cell;
-        if (cloud->field.model == SHAPE_MODEL_LAYER && inner < fewest) {
-            /* A layer is far wider than it is thick, and its light changes over its thickness. */
-            inner = fewest;
-            edge = fmaxf((max[axis] - min[axis]) / (float)fewest, reach * 1e-6f);
-        }
-        grid->size[axis] = (inner < 1 ? 1 : inner) + 2;
-        float middle = 0.5f * min[axis] + 0.5f * max[axis], half = 0.5f * edge * (float)grid->size[axis];
-        min[axis] = middle - half;
-        max[axis] = middle + half;
-    }
-    grid->box = box;
-}
-
-static shape_vec3 cell_point(const shape_lightgrid *grid, int x, int y, int z, float fx, float fy, float fz)
-{
-    shape_vec3 size = shape_vec3_sub(grid->box.max, grid->box.min);
-    return shape_vec3_make(grid->box.min.x + size.x * ((float)x + fx) / (float)grid->size[0],
-                           grid->box.min.y + size.y * ((float)y + fy) / (float)grid->size[1],
-                           grid->box.min.z + size.z * ((float)z + fz) / (float)grid->size[2]);
 }
 
 /* The step of the march to the sun: set by the finest noise of any cloud. */
@@ -90,6 +52,7 @@ typedef struct sun_pass {
     shape_dvec3 sun;
     float step;
     const shape_opaque *opaque;
+    shape_stop stop;
 } sun_pass;
 
 static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y, int z,
@@ -98,7 +61,7 @@ static shape_status march_row(const sun_pass *pass, shape_lightgrid *grid, int y
     float *row = grid->cells + ((size_t)z * (size_t)grid->size[1] + (size_t)y) * (size_t)grid->size[0] *
                                    SHAPE_LIGHTGRID_VALUES;
     for (int x = 0; x < grid->size[0]; x++) {
-        shape_vec3 p = cell_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
+        shape_vec3 p = lightgrid_point(grid, x, y, z, 0.5f, 0.5f, 0.5f);
         shape_dvec3 world = shape_frame_point(&pass->cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
         double depth = (double)DEEPEST;
         shape_status status = SHAPE_OK;
@@ -118,7 +81,7 @@ static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightg
     shape_status status = SHAPE_OK;
 #pragma omp parallel num_threads(threads)
     {
-        shape_candidates scratch = {0};
+        shape_candidates scratch = {.stop = pass->stop};
         shape_error own = {0};
 #pragma omp for schedule(dynamic, 4)
         for (int i = 0; i < rows; i++) {
@@ -150,8 +113,8 @@ static void fill_albedos(const shape_volume_cloud *cloud, const shape_lightgrid 
             for (int corner = 0; corner < 8; corner++) {
                 float rgb[3];
                 shape_vec3 p =
-                    cell_point(grid, x, i % grid->size[1], i / grid->size[1], corner & 1 ? 0.75f : 0.25f,
-                               corner & 2 ? 0.75f : 0.25f, corner & 4 ? 0.75f : 0.25f);
+                    lightgrid_point(grid, x, i % grid->size[1], i / grid->size[1], corner & 1 ? 0.75f : 0.25f,
+                                    corner & 2 ? 0.75f : 0.25f, corner & 4 ? 0.75f : 0.25f);
                 float density = shape_cloud_density(cloud, p);
                 shape_cloud_albedo(cloud, p, rgb);
                 sum += density;
@@ -159,70 +122,6 @@ static void fill_albedos(const shape_volume_cloud *cloud, const shape_lightgrid 
             }
             grid->albedos[(size_t)i * (size_t)grid->size[0] + (size_t)x] = sum > 0 ? scattered / sum : 0;
         }
-}
-
-/* Adds the densities of a row of half cells, for which the primitives are known. */
-static void add_half_row(const shape_volume_cloud *cloud, const row_forms *list, const field_row *row,
-                         float *extinction)
-{
-    enum { WHOLE = ROW_MOST / 2 };
-    float u2[ROW_MOST], density[ROW_MOST];
-    int cells = row->count / 2;
-    for (int begin = 0; begin < cells; begin += WHOLE) {
-        field_row part = *row;
-        part.low[0] += part.step * (float)(2 * begin);
-        part.count = 2 * (cells - begin < WHOLE ? cells - begin : WHOLE);
-        row_u2(list, cloud->support, &part, u2);
-        for (int i = 0; i < part.count && cloud->field.model == SHAPE_MODEL_GRID; i++)
-            u2[i] = 0;
-        row_density(cloud, &part, u2, density);
-        for (int i = 0; i < part.count / 2; i++)
-            extinction[begin + i] += density[2 * i] + density[2 * i + 1];
-    }
-}
-
-/* Mean extinction of a cell from eight points: what the scattered light needs, no finer. */
-static shape_status fill_extinction(const shape_volume_cloud *cloud, const shape_lightgrid *grid, int threads,
-                                    float *extinction, shape_error *error)
-{
-    int rows = grid->size[1] * grid->size[2], across = grid->size[0];
-    shape_status status = SHAPE_OK;
-#pragma omp parallel num_threads(threads)
-    {
-        row_forms list = {0};
-        shape_error own = {0};
-#pragma omp for schedule(dynamic, 4)
-        for (int i = 0; i < rows; i++) {
-            float *out = extinction + (size_t)i * (size_t)across;
-            int y = i % grid->size[1], z = i / grid->size[1];
-            for (int x = 0; x < across; x++)
-                out[x] = 0;
-            if (own.status || row_collect(cloud, cell_point(grid, 0, y, z, 0, 0, 0),
-                                          cell_point(grid, across, y, z, 0, 1, 1), &list, &own))
-                continue;
-            for (int corner = 0; corner < 4 && list.count; corner++) {
-                shape_vec3 low =
-                    cell_point(grid, 0, y, z, 0, corner & 1 ? 0.75f : 0.25f, corner & 2 ? 0.75f : 0.25f);
-                field_row row = {0,
-                                 2 * across,
-                                 {low.x, low.y, low.z},
-                                 (grid->box.max.x - grid->box.min.x) / (float)(2 * across)};
-                add_half_row(cloud, &list, &row, out);
-            }
-            for (int x = 0; x < across; x++)
-                out[x] *= cloud->medium.extinction / 8;
-        }
-        free(list.items);
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
-    }
-    return status;
 }
 
 /* A grid of half as many cells a side: means of extinction and beam. */
@@ -367,9 +266,32 @@ static float scale_cell(const shape_lightgrid *grid, size_t cell, float albedo, 
     return thin > 0 ? albedo * (1 - peak) / thin : 0;
 }
 
-static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light, int channel,
-                            int finest, int threads, shape_lightgrid *grid, shape_error *error)
+/* The densities: from an earlier grid where there is one, which lies where this one lies. */
+static shape_status find_densities(const shape_volume_cloud *cloud, const shape_lightgrid_options *options,
+                                   int threads, shape_lightgrid *grid, shape_error *error)
 {
+    const shape_lightgrid *from = options->from;
+    const shape_change *change = NULL;
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    grid->densities = malloc(cells * sizeof *grid->densities);
+    if (!grid->densities)
+        return shape_error_memory(error);
+    if (from && from->densities && !(options->change && options->change->all)) {
+        static const shape_change none = {0};
+        change = options->change ? options->change : &none;
+        memcpy(grid->densities, from->densities, cells * sizeof *grid->densities);
+    }
+    shape_volume_cloud copy = *cloud;
+    copy.stop = &options->stop;
+    return lightgrid_fill_densities(&copy, grid, change, threads, options->stop, error);
+}
+
+static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *light,
+                            const shape_lightgrid_options *options, int threads, shape_lightgrid *grid,
+                            shape_error *error)
+{
+    const int channel = options->channel,
+              finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
     float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments), *shares = NULL;
@@ -382,8 +304,9 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     if (!status) {
         float peak, rest, albedo = 0;
         shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &peak, &rest);
-        status = fill_extinction(cloud, grid, threads, extinction, error);
-        if (!status && shares)
+        for (size_t i = 0; i < cells; i++)
+            extinction[i] = cloud->medium.extinction * grid->densities[i];
+        if (shares)
             fill_albedos(cloud, grid, channel, threads);
         for (size_t i = 0; i < cells && !status; i++) {
             albedo =
@@ -399,6 +322,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
                                .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
                                .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
                                .moments = moments,
+                               .stop = options->stop,
                                .visits = &grid->visits};
         for (int axis = 0; axis < 3; axis++) {
             p.size[axis] = grid->size[axis];
@@ -431,11 +355,13 @@ static shape_status find_depths(const shape_volume *volume, size_t cloud, const 
     if (!between.clouds)
         return shape_error_memory(error);
     for (size_t i = 0; i < volume->cloud_count; i++)
-        if (i == cloud || shadow_may_fall(&volume->clouds[i], &volume->clouds[cloud], light->sun))
-            between.clouds[count++] = volume->clouds[i];
+        if (i == cloud || shape_sun_may_shade(&volume->clouds[i], &volume->clouds[cloud], light->sun)) {
+            between.clouds[count] = volume->clouds[i];
+            between.clouds[count++].stop = &options->stop;
+        }
     between.cloud_count = count;
-    sun_pass pass = {&between, &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
-                     options->opaque};
+    sun_pass pass = {&between,        &volume->clouds[cloud], light->sun, choose_step(volume, options->step),
+                     options->opaque, options->stop};
     shape_status status = march_to_sun(&pass, threads, grid, error);
     free(between.clouds);
     return status;
@@ -449,7 +375,7 @@ static void darken(const shape_volume_cloud *cloud, const shape_light *light, co
 #pragma omp parallel for schedule(dynamic, 4) num_threads(threads)
     for (int i = 0; i < rows; i++)
         for (int x = 0; x < grid->size[0]; x++) {
-            shape_vec3 p = cell_point(grid, x, i % grid->size[1], i / grid->size[1], 0.5f, 0.5f, 0.5f);
+            shape_vec3 p = lightgrid_point(grid, x, i % grid->size[1], i / grid->size[1], 0.5f, 0.5f, 0.5f);
             shape_dvec3 world = shape_frame_point(&cloud->frame, shape_dvec3_make(p.x, p.y, p.z));
             if (shape_opaque_blocks(opaque, world, light->sun, INFINITY))
                 grid->cells[((size_t)i * (size_t)grid->size[0] + (size_t)x) * SHAPE_LIGHTGRID_VALUES] =
@@ -480,6 +406,20 @@ static shape_status check(const shape_volume *volume, size_t cloud, const shape_
     return SHAPE_OK;
 }
 
+static bool lies_alike(const shape_lightgrid *a, const shape_lightgrid *b)
+{
+    return !memcmp(a->size, b->size, sizeof a->size) && !memcmp(&a->box, &b->box, sizeof a->box);
+}
+
+/* The scattered light of an earlier grid, as it was. */
+static void keep_scattered(const shape_lightgrid *from, shape_lightgrid *grid)
+{
+    size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    for (size_t i = 0; i < cells; i++)
+        memcpy(grid->cells + i * SHAPE_LIGHTGRID_VALUES + 1, from->cells + i * SHAPE_LIGHTGRID_VALUES + 1,
+               (SHAPE_LIGHTGRID_VALUES - 1) * sizeof *grid->cells);
+}
+
 shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, const shape_light *light,
                                    const shape_lightgrid_options *options, shape_lightgrid *grid,
                                    shape_error *error)
@@ -491,20 +431,26 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
     int threads = options->threads > 0 ? options->threads : omp_get_max_threads();
     const shape_volume_cloud *c = &volume->clouds[cloud];
     lightgrid_lay_out(c, options->resolution, grid);
+    shape_lightgrid_options earlier = *options;
+    if (earlier.from && !lies_alike(earlier.from, grid))
+        earlier.from = NULL;
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     grid->cells = calloc(cells * SHAPE_LIGHTGRID_VALUES, sizeof *grid->cells);
     if (!grid->cells)
         return shape_error_memory(error);
     if (options->sweep) {
-        sunsweep_fill(options->sweep, cloud, threads, grid);
-        if (options->opaque)
+        status = sunsweep_fill(options->sweep, cloud, threads, options->stop, grid, error);
+        if (!status && options->opaque)
             darken(c, light, options->opaque, threads, grid);
     } else {
         status = find_depths(volume, cloud, light, options, threads, grid, error);
     }
-    int finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
+    if (!status && (options->scattering || (earlier.from && earlier.from->densities)))
+        status = find_densities(c, &earlier, threads, grid, error);
     if (!status && options->scattering)
-        status = scatter(c, light, options->channel, finest, threads, grid, error);
+        status = scatter(c, light, options, threads, grid, error);
+    else if (!status && earlier.from)
+        keep_scattered(earlier.from, grid);
     if (status)
         shape_lightgrid_free(grid);
     return status;
@@ -514,5 +460,6 @@ void shape_lightgrid_free(shape_lightgrid *grid)
 {
     free(grid->cells);
     free(grid->albedos);
+    free(grid->densities);
     memset(grid, 0, sizeof *grid);
 }

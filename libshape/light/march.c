@@ -25,6 +25,7 @@ shape_march_options shape_march_defaults(void)
     options.resolution = 48;
     options.samples = 1;
     options.powder = 2;
+    options.octaves = SHAPE_MARCH_OCTAVES_MAX;
     options.shade = 1;
     options.forward = 0.5;
     options.cutoff = 1e-8;
@@ -75,9 +76,14 @@ static const char *find_wrong_number(const shape_march_options *o)
         return "shade: must be from 0 to 1";
     if (!(o->forward >= 0 && o->forward <= 1))
         return "forward: must be from 0 to 1";
+    if (o->octaves < 1 || o->octaves > SHAPE_MARCH_OCTAVES_MAX)
+        return "octaves: must be from 1 to 8";
     for (int c = 0; c < 3; c++)
         if (!(o->emission[c] >= 0 && o->emission[c] <= 1e9f))
             return "emission: must be from 0 to 1e9";
+    for (int c = 0; c < 3; c++)
+        if (!(o->ambient[c] >= 0 && o->ambient[c] <= 1e9f))
+            return "ambient: must be from 0 to 1e9";
     if (!(o->lock >= 0 && o->lock <= 1e9))
         return "lock: must be from 0 to 1e9 points a metre";
     if (!(o->cutoff >= 1e-12 && o->cutoff <= 0.1))

@@ -7,18 +7,16 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { OCTAVES = 8 };
-
 /* Copy k has extinction, strength and mean cosine halved k times; the strengths sum to 1. */
-static double octaves(const shape_medium *medium, float cosine, double depth)
+static double octaves(const shape_medium *medium, int count, float cosine, double depth)
 {
-    double sum = 0, share = 0.5 / (1 - ldexp(1, -OCTAVES));
+    double sum = 0, share = 0.5 / (1 - ldexp(1, -count));
     shape_medium wide = *medium;
     if (wide.phase == SHAPE_PHASE_MIE) {
         wide.phase = SHAPE_PHASE_HG;
         wide.g = shape_phase_mean_cosine(medium);
     }
-    for (int k = 0; k < OCTAVES; k++, share /= 2, depth /= 2) {
+    for (int k = 0; k < count; k++, share /= 2, depth /= 2) {
         sum += share * (double)shape_phase(k ? &wide : medium, cosine) * exp(-depth);
         wide.g /= 2;
         wide.g2 /= 2;
@@ -78,7 +76,7 @@ static double scattered(march_ray *ray, const lit_point *at, const march_way *wa
     }
     *depth = march_shaded(m->options.shade, march_depth(ray, at->world, way, at->cloud, at->p));
     if (m->options.light == SHAPE_MARCH_OCTAVES)
-        return octaves(medium, (float)cosine, *depth);
+        return octaves(medium, m->options.octaves, (float)cosine, *depth);
     return phase(m, at, cosine) * attenuation(&m->options, cosine, *depth);
 }
 
@@ -107,25 +105,24 @@ static void look_up(const lit_point *at, const float albedo[3], double rgb[3])
 static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
 {
     const shape_marcher *m = ray->marcher;
-    bool sky = m->options.light == SHAPE_MARCH_OCTAVES;
+    bool sky = m->options.light == SHAPE_MARCH_OCTAVES, grid = m->options.light == SHAPE_MARCH_GRID;
     float albedo[3];
     shape_cloud_albedo(at->cloud->cloud, at->p, albedo);
-    if (m->options.light == SHAPE_MARCH_GRID) {
+    if (grid)
         look_up(at, albedo, rgb);
-        return;
-    }
     double depth = 0, value = 0;
     march_way sun = march_sun_way(m);
-    if (m->has_sun || sky)
+    if (!grid && (m->has_sun || sky))
         value = scattered(ray, at, &sun, &depth);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = value * (double)m->light.sun_irradiance[c];
-    for (int c = 0; c < 3 && sky; c++)
-        rgb[c] += exp(-fmin(depth, 1e3) / 8) * (double)(m->upper[c] + m->lower[c]) / 2;
+    double through = sky ? exp(-fmin(depth, 1e3) / 8) : 0;
+    for (int c = 0; c < 3 && !grid; c++)
+        rgb[c] =
+            value * (double)m->light.sun_irradiance[c] + through * (double)(m->upper[c] + m->lower[c]) / 2;
     if (m->has_lamp)
         add_lamp(ray, at, rgb);
     for (int c = 0; c < 3; c++)
-        rgb[c] *= (double)albedo[c];
+        rgb[c] =
+            (grid ? rgb[c] : rgb[c] * (double)albedo[c]) + (double)albedo[c] * (double)m->options.ambient[c];
 }
 
 /* The square of u at a point of cloud i; above the support's where there is nothing. */

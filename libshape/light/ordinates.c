@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/stop.h"
+
 enum { OCTANTS = 8, PER_OCTANT = 3 };
 
 static const float low = 0.3500212f, high = 0.8688903f;
@@ -110,7 +112,8 @@ static void sweep(const ordinates_problem *p, int octant, lanes *plane, float *s
     for (int i = 0; i < PER_OCTANT; i++)
         d[i] = make_direction(p, octant, i);
     int dx = octant & 1 ? 1 : -1, dy = octant & 2 ? 1 : -1, dz = octant & 4 ? 1 : -1;
-    for (int k = 0; k < nz; k++) {
+    stop_watch watch = {.stop = p->stop};
+    for (int k = 0; k < nz && !stop_after(&watch, (size_t)nx * (size_t)ny); k++) {
         int z = dz > 0 ? k : nz - 1 - k;
         for (int j = 0; j < ny; j++) {
             int y = dy > 0 ? j : ny - 1 - j;
@@ -152,6 +155,7 @@ shape_status ordinates_solve(const ordinates_problem *p, int iterations, float t
                              shape_error *error)
 {
     float last_change = 0;
+    shape_status status = SHAPE_OK;
     size_t cells = (size_t)p->size[0] * (size_t)p->size[1] * (size_t)p->size[2];
     const size_t layer = (size_t)p->size[0] * (size_t)p->size[1] * PER_OCTANT;
     /* Each octant sums into memory of its own and the sums are added in order: equal for any number of threads. */
@@ -166,6 +170,11 @@ shape_status ordinates_solve(const ordinates_problem *p, int iterations, float t
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
         for (int octant = 0; octant < OCTANTS; octant++)
             sweep(p, octant, planes + (size_t)octant * layer, sums + (size_t)octant * cells * ORDINATES_CELL);
+        stop_watch watch = {.stop = p->stop};
+        if (stop_now(&watch)) {
+            status = stop_error(error);
+            break;
+        }
         float change, peak;
         if (p->visits)
             *p->visits += cells;
@@ -178,5 +187,5 @@ shape_status ordinates_solve(const ordinates_problem *p, int iterations, float t
     }
     free(sums);
     free(planes);
-    return SHAPE_OK;
+    return status;
 }

@@ -22,6 +22,7 @@ typedef struct ordinates_problem {
     shape_vec3 sun_travel;   /* unit direction in which sun light travels, grid's frame */
     shape_vec3 up;           /* the world's up, grid's frame, unit */
     float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
+    shape_stop stop;         /* to break off */
     uint64_t *visits;        /* cells times rounds are added; NULL: not counted */
 } ordinates_problem;
 

@@ -134,7 +134,7 @@ static double ball(const shape_volume_cloud *c, shape_dvec3 *centre)
     return sqrt(radius2);
 }
 
-bool shadow_may_fall(const shape_volume_cloud *caster, const shape_volume_cloud *on, shape_dvec3 sun)
+bool shape_sun_may_shade(const shape_volume_cloud *caster, const shape_volume_cloud *on, shape_dvec3 sun)
 {
     shape_dvec3 from, to;
     if (shape_box_is_empty(caster->box) || shape_box_is_empty(on->box))

@@ -5,9 +5,6 @@
 #include "shape/lightgrid.h"
 #include "shape/sunsweep.h"
 
-/* The cells of a cloud's light grid: box and size, no memory (lightgrid.c). */
-void lightgrid_lay_out(const shape_volume_cloud *cloud, int resolution, shape_lightgrid *grid);
-
 /* Clouds that may shade others, given as boxes seen from the sun: see shadowcast.c. */
 typedef struct shadow_pairs {
     size_t *first;   /* [clouds + 1]: where a cloud's casters begin in `casters` */
@@ -18,12 +15,10 @@ typedef struct shadow_pairs {
 shape_status shadow_pairs_find(const shape_volume *volume, shape_dvec3 sun, shadow_pairs *pairs,
                                shape_error *error);
 void shadow_pairs_free(shadow_pairs *pairs);
-/* Whether a cloud may throw a shadow on another: by the balls around their boxes. */
-bool shadow_may_fall(const shape_volume_cloud *caster, const shape_volume_cloud *on, shape_dvec3 sun);
-
 /* Whether the sweep has this cloud's own sums. */
 bool sunsweep_has(const shape_sunsweep *sweep, size_t cloud);
 /* Writes the optical depth of each cell's middle into value 0 of the cells. */
-void sunsweep_fill(const shape_sunsweep *sweep, size_t cloud, int threads, shape_lightgrid *grid);
+shape_status sunsweep_fill(const shape_sunsweep *sweep, size_t cloud, int threads, shape_stop stop,
+                           shape_lightgrid *grid, shape_error *error);
 
 #endif

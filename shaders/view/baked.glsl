@@ -3,8 +3,16 @@
 #ifdef AIR
 #include "view/air.glsl"
 #endif
+#ifdef LAW
+#include "light/phase.glsl"
+#include "light/law.glsl"
+uniform highp sampler3D light_depth; // optical depth to the sun, placed like the light grids
+#define LIGHT_GRIDS light_depth
+#else
+uniform highp sampler3D light_seen; // source function towards the eye, placed like them
+#define LIGHT_GRIDS light_seen
+#endif
 uniform highp sampler3D baked;      // density, distance in blocks of 4 voxels; all clouds in one atlas
-uniform highp sampler3D light_seen; // source function towards the eye, placed like the light grids
 uniform float step_scale;           // steps, in voxels
 uniform float step_growth;          // metres a metre
 uniform float step_depth;           // optical depth
@@ -31,7 +39,7 @@ void baked_places(int c, out vec3 factor, out vec3 offset)
 void light_places(int c, out vec3 factor, out vec3 offset, out vec3 low, out vec3 high)
 {
     vec4 slot = cloud_texel(c, 8), size = cloud_texel(c, 9), from = cloud_texel(c, 10), to = cloud_texel(c, 11);
-    vec3 atlas = vec3(textureSize(light_seen, 0)), scale = size.xyz / (to.xyz - from.xyz);
+    vec3 atlas = vec3(textureSize(LIGHT_GRIDS, 0)), scale = size.xyz / (to.xyz - from.xyz);
     factor = scale / atlas;
     offset = (slot.xyz - from.xyz * scale) / atlas;
     low = (slot.xyz + 0.5) / atlas;
@@ -53,6 +61,10 @@ void load_baked(int c, vec3 direction)
     light_base = cloud_origin * factor + offset;
     light_slope = cloud_direction * factor;
     fetches += 6.0;
+#ifdef LAW
+    law_load(c, cloud_texel(c, 16), cloud_texel(c, 17), cloud_texel(c, 9).w, cloud_texel(c, 35).rgb, direction);
+    fetches += 4.0;
+#endif
 }
 
 vec2 baked_at(float t)
@@ -64,7 +76,12 @@ vec2 baked_at(float t)
 vec3 light_at(float t)
 {
     fetches += 1.0;
-    vec3 light = texture(light_seen, clamp(light_base + t * light_slope, light_low, light_high)).rgb;
+    vec3 place = clamp(light_base + t * light_slope, light_low, light_high);
+#ifdef LAW
+    vec3 light = law_light(texture(light_depth, place).r);
+#else
+    vec3 light = texture(light_seen, place).rgb;
+#endif
 #ifdef AIR
     light = through_air(light, t);
 #endif
@@ -97,9 +114,14 @@ void march_loaded(float t0, float t1)
         vec2 first = baked_at(s), second = baked_at(s + width);
         steps += 2.0;
         if (first.x + second.x > 0.002) {
+#ifdef LAW // what comes from the sun alone does not
+            add_segment(first.x * cloud_extinction, light_at(t + 0.5 * width), width);
+            add_segment(second.x * cloud_extinction, light_at(t + 1.5 * width), width);
+#else
             vec3 source = light_at(t + width);
             add_segment(first.x * cloud_extinction, source, width);
             add_segment(second.x * cloud_extinction, source, width);
+#endif
             t += 2.0 * width;
         } else
             t += max(2.0 * width, leap(first.y));

@@ -19,7 +19,15 @@ uniform float step_depth;     // optical depth up to which they do beyond a thir
 uniform float step_deep;      // how much longer steps get where little shines through: 1 + step_deep at the end
 uniform float transmittance_end;
 
+#ifdef LAW
+#include "light/phase.glsl"
+#include "light/law.glsl"
+uniform highp sampler3D light_depth; // optical depth to the sun
+#define LIGHT_GRIDS light_depth
+#else
 uniform highp sampler3D light_seen; // source function towards the eye, see viewer/gl/grid_light.c
+#define LIGHT_GRIDS light_seen
+#endif
 
 layout(location = 0) out vec4 radiance_out; // radiance, coverage
 layout(location = 1) out vec4 work_out;     // steps, fetches, where to go on or -1
@@ -49,7 +57,15 @@ vec3 light_at(vec3 p, float t)
     vec4 low = cloud_texel(cloud_index, 10), high = cloud_texel(cloud_index, 11);
     vec3 cell = clamp((p - low.xyz) / (high.xyz - low.xyz) * size.xyz, vec3(0.5), size.xyz - 0.5);
     fetches += 5.0;
-    vec3 light = texture(light_seen, (slot.xyz + cell) / vec3(textureSize(light_seen, 0))).rgb;
+    vec3 place = (slot.xyz + cell) / vec3(textureSize(LIGHT_GRIDS, 0));
+#ifdef LAW
+    vec3 glow = cloud_texel(cloud_index, 35).rgb;
+    law_load(cloud_index, cloud_texel(cloud_index, 16), cloud_texel(cloud_index, 17), size.w, glow, ray);
+    fetches += 3.0;
+    vec3 light = law_light(texture(light_depth, place).r);
+#else
+    vec3 light = texture(light_seen, place).rgb;
+#endif
 #ifdef AIR
     light = through_air(light, t);
 #endif

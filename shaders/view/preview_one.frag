@@ -8,6 +8,10 @@
 
 flat in vec4 tile_x, tile_y, tile_z, tile_low, tile_high;
 flat in vec3 tile_baked, tile_baked_offset, tile_light, tile_light_offset, tile_light_low, tile_light_high;
+#ifdef LAW
+flat in vec4 tile_medium, tile_more;
+flat in vec3 tile_glow;
+#endif
 
 void load_tile(vec3 ray)
 {
@@ -21,6 +25,9 @@ void load_tile(vec3 ray)
     light_slope = cloud_direction * tile_light;
     light_low = tile_light_low;
     light_high = tile_light_high;
+#ifdef LAW
+    law_load(0, tile_medium, tile_more, tile_more.z, tile_glow, ray);
+#endif
 }
 
 void main()

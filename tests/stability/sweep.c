@@ -55,6 +55,9 @@ static shape_march_options draw_march(scene *s)
     if (scene_choose(s, 4) == 0)
         o.alpha_power = scene_spread(s, 0.01, 100), o.alpha_peel = scene_share(s);
     o.seed = shape_random_u32(&s->random);
+    o.octaves = 1 + scene_choose(s, SHAPE_MARCH_OCTAVES_MAX);
+    if (scene_choose(s, 4) == 0)
+        o.ambient[scene_choose(s, 3)] = (float)scene_spread(s, 1e-6, 1e9);
     o.opaque = s->opaque;
     return o;
 }

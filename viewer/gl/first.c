@@ -17,7 +17,8 @@ shape_status shape_gl_first_make(const shape_gl_options *options, const shape_vo
 {
     enum { FEW = 4, LEAST_LIMIT = 256 /* of every GPU's 3-D textures */ };
     *made = NULL;
-    if (options->method != SHAPE_GL_DEFAULT || !options->background)
+    if (options->method != SHAPE_GL_DEFAULT || !options->background ||
+        options->lighting.law != SHAPE_GL_LAW_GRID)
         return SHAPE_OK;
     shape_gl_first *first = calloc(1, sizeof *first);
     if (!first)
@@ -31,6 +32,7 @@ shape_status shape_gl_first_make(const shape_gl_options *options, const shape_vo
                               .all_clouds = options->light.opaque || light->air.visibility > 0,
                               .view = *view,
                               .bake_voxels = options->bake_voxels,
+                              .stop = options->stop,
                               .texture_limit = LEAST_LIMIT,
                               /* Starting OpenGL keeps a core busy, and is not done sooner. */
                               .threads = volume->cloud_count > FEW ? 0 : 1};

@@ -107,6 +107,18 @@ typedef enum gl_fit { GL_FITS, GL_TOO_FINE, GL_FAR_TOO_FINE, GL_TOO_COARSE, GL_M
 typedef struct gl_light gl_light;
 typedef struct gl_baked gl_baked;
 
+/* --- update.c: what an edit leaves --- */
+
+/* What differs between the volume that is loaded and another one. */
+typedef struct gl_update {
+    const shape_volume *volume; /* the other one */
+    size_t count;
+    shape_change *changes; /* of density, a cloud each */
+    bool *replaced;        /* placed elsewhere, or of another medium: its light is another one */
+    bool *shaded;          /* its own density or that of clouds between it and the sun has changed */
+    bool pending;          /* loaded, and not yet done */
+} gl_update;
+
 /* What is to be made, and how. */
 typedef struct gl_order {
     const shape_volume *volume;
@@ -118,6 +130,10 @@ typedef struct gl_order {
     bool all_clouds;            /* light those out of sight, too: their shadows are seen */
     const gl_light *light_from; /* clouds' grids are taken over from these where they do; NULL: none do */
     const gl_baked *baked_from;
+    const gl_light
+        *dense_from;         /* under an earlier sun: the cells' densities are still true; NULL: none are */
+    const gl_update *update; /* an edit's, which light_from is from before: only this is done; NULL: none */
+    shape_stop stop;
     shape_lightgrid_options light_options;
     int scattering_cells; /* shape_lightgrid_options.scattering_resolution */
     shape_view view;
@@ -126,7 +142,8 @@ typedef struct gl_order {
 } gl_order;
 
 enum {
-    GL_KEPT_CELLS = 2000000 /* of light, of clouds out of sight */
+    GL_KEPT_CELLS = 2000000, /* of light, of clouds out of sight */
+    GL_KEPT_SWEEP = 64 << 20 /* bytes of a sweep that is kept for the next */
 };
 /* How much wider than what is seen the pyramid is within which clouds are lit and baked, so that they are ready when a view
  * turns to them. */
@@ -141,19 +158,29 @@ gl_fit gl_fit_sizes(double has, double wants);
 typedef struct gl_lit {
     atomic_int uses;
     shape_lightgrid grid;
-    int wanted;   /* cells along the longest side, as the view asked for; 0: a first one, to be replaced */
+    int wanted; /* cells along the longest side, as the view asked for; 0: a first one, to be replaced */
+    int cells, swept; /* along the longest side, of the grid and of the sweep */
+    bool stale;       /* its scattered light is of what was there before an edit */
     float *shade; /* a number a cell: the sun's share that clouds let through; NULL where nothing is opaque */
 } gl_lit;
+
+/* A sweep that the next one may begin from. */
+typedef struct gl_swept {
+    atomic_int uses;
+    shape_sunsweep *sweep;
+} gl_swept;
 
 /* Light grids of clouds, in one atlas. Shared: the last user's drop frees it. */
 struct gl_light {
     int uses, count, size[3];
-    int made;     /* clouds that were lit for it, not taken over */
-    gl_lit **lit; /* a cloud each; NULL: it has none */
+    int made;        /* clouds that were lit for it, not taken over */
+    gl_lit **lit;    /* a cloud each; NULL: it has none */
+    gl_swept *swept; /* NULL: none is kept */
     gl_box *boxes;
     float *cells; /* scratch, as large as the atlas */
     float *shade; /* the sun's share that clouds let through, for what is opaque; NULL where nothing is */
     GLuint a, b, seen, shade_texture;
+    GLuint depth; /* to the sun, of the laws of law.c */
 };
 
 shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *error); /* needs no OpenGL */
@@ -165,6 +192,8 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
 /* Composes the light of the shown clouds for an eye and uploads it. */
 shape_status gl_light_compose(gl_light *light, shape_gl_renderer *renderer, shape_dvec3 eye,
                               shape_error *error);
+/* Uploads the cells' depths to the sun, once. */
+void gl_light_upload_depths(gl_light *light, shape_gl_renderer *renderer);
 /* Of the clouds that the view sees, its pyramid made `wider` times as wide and high, the worst. */
 gl_fit gl_light_fit(const gl_light *light, const gl_order *order, double wider);
 void gl_light_drop(gl_light *light); /* NULL is allowed */
@@ -215,6 +244,8 @@ typedef struct gl_pool {
 shape_status gl_pool_place(gl_pool *pool, const gl_baked *baked, int texture_limit, shape_error *error);
 /* Sends what has not been sent of a placed set, about `most` bytes of it; adds to *bytes. Returns whether all is there. */
 bool gl_pool_send(gl_pool *pool, const gl_baked *baked, size_t most, size_t *bytes);
+/* Sends the bricks of a grid that are flagged (shape_bake_again), where it has been sent already; adds to *bytes. */
+void gl_pool_patch(const gl_pool *pool, const gl_dense *dense, const uint8_t *bricks, size_t *bytes);
 /* Throws out what is in none of the sets, some of which may be NULL. */
 void gl_pool_keep(gl_pool *pool, const gl_baked *const sets[], int count);
 void gl_pool_free(gl_pool *pool);
@@ -280,8 +311,7 @@ typedef struct gl_frame {
 /* What the default method has of its own. */
 typedef struct gl_preview {
     GLuint sky_picture_program, one, fill, several, sky; /* in the order in which they are compiled */
-    int compiled;                                        /* how many of them are */
-    int warm;                                            /* how many the driver has made ready, too */
+    int warm;              /* how many of them the driver has made ready, too (gl_preview_warm) */
     gl_target coarse;      /* a moving view's first pass: every second pixel each way */
     gl_target sky_picture; /* see shaders/view/sky_picture.glsl */
     bool moving;           /* the last picture was a moving view's */
@@ -307,14 +337,17 @@ struct shape_gl_renderer {
     gl_refinement *refinement;  /* what is being made on a thread, or NULL */
     gl_grids coming;            /* what it has made, while that is sent to the GPU; NULL where nothing is */
     double coming_ms[2];        /* how long light and baked density of it took */
+    gl_update update;
+    gl_light *earlier; /* under an earlier sun, for its densities; NULL */
     gl_pool pool;
     int fade_left;
     bool light_changed, refined;
     bool early, early_drawn; /* the picture that is being drawn, any picture: without shaders (early.c) */
+    bool unsent;             /* the voxels in use are not on the GPU, since the first picture needs none */
     gl_preview preview;
     gl_surface surface;
     gl_air air;
-    bool with_air; /* what the programs were made for */
+    int made_for; /* the programs, see gl_make_programs */
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
@@ -331,6 +364,12 @@ struct shape_gl_renderer {
 };
 
 void gl_grids_drop(gl_grids *grids);
+
+/* Compares a volume that is about to be loaded with the one that is; false where no grids may stay. */
+bool gl_update_begin(shape_gl_renderer *renderer, const shape_volume *volume);
+/* After that volume has been loaded: makes again what differs of the grids that are there. */
+shape_status gl_update_do(shape_gl_renderer *renderer, const gl_order *order, shape_error *error);
+void gl_update_free(gl_update *update);
 void gl_draw_triangle(const shape_gl_renderer *renderer);
 /* What is drawn next is blended into the running mean: sample n counts 1 / (n + 1). */
 void gl_begin_mean(int sample);
@@ -343,13 +382,29 @@ void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GL
 shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
                          shape_error *error);
 
+/* Makes the programs anew where they are for other air, or another law of light. */
+shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error);
+
+/* --- law.c: by what points are lit --- */
+
+shape_gl_law gl_law(const shape_gl_renderer *renderer);
+/* Whether the sky lights anything by it. */
+bool gl_law_has_sky(shape_gl_law law);
+/* Adds the line by which shaders are made for it, or nothing. */
+void gl_law_define(const shape_gl_renderer *renderer, char *defines, size_t size);
+/* Ambient light and emission: added to a cloud's cells as the eye sees them; and put into all clouds' records. */
+void gl_law_glow(const shape_gl_renderer *renderer, const shape_medium *medium, size_t cells, float *rgba);
+void gl_law_place(const shape_gl_renderer *renderer, gl_scene *scene);
+/* Tells a marching program of it; after gl_set_grids. The program is in use. */
+void gl_set_law(const shape_gl_renderer *renderer, const gl_grids *grids, GLuint program);
+
 /* --- refine.c --- */
 
 /* Before a picture: makes what it needs, or, in the background, something coarse, with the rest to come. */
 shape_status gl_refine(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
 /* Sends the voxels in use to the GPU, where that has not been done. */
 shape_status gl_refine_send(shape_gl_renderer *renderer, shape_error *error);
-/* Waits for the thread and throws away what it made. */
+/* Breaks the thread off, waits for it and throws away what it made. */
 void gl_refine_stop(shape_gl_renderer *renderer);
 
 /* --- surface.c, of a renderer --- */
@@ -379,7 +434,8 @@ shape_status gl_preview_compile(shape_gl_renderer *renderer, int count, shape_er
 /* Draws next to nothing by one more program, since drivers compile the rest of a shader when it is first drawn with. */
 shape_status gl_preview_warm(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
                              shape_error *error);
-void gl_preview_drop_programs(gl_preview *preview);
+/* marching: those alone that light comes into. */
+void gl_preview_drop_programs(gl_preview *preview, bool marching);
 shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
 void gl_preview_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame);
 void gl_preview_free(gl_preview *preview);

@@ -148,7 +148,7 @@ static shape_status bake(const gl_order *order, size_t cloud, float wanted, floa
     gl_dense *dense = calloc(1, sizeof *dense);
     if (!dense)
         return shape_error_memory(error);
-    shape_status status = shape_bake(c, voxel, threads, &dense->baked, error);
+    shape_status status = shape_bake_with(c, voxel, threads, order->stop, &dense->baked, error);
     if (status) {
         free(dense);
         return status;

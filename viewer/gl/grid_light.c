@@ -29,16 +29,26 @@ static gl_lit *share(gl_lit *lit)
     return lit;
 }
 
+static void drop_swept(gl_swept *swept)
+{
+    if (!swept || atomic_fetch_sub(&swept->uses, 1) > 1)
+        return;
+    shape_sunsweep_destroy(swept->sweep);
+    free(swept);
+}
+
 void gl_light_drop(gl_light *light)
 {
     if (!light || --light->uses)
         return;
     for (int i = 0; i < light->count; i++)
         drop_lit(light->lit[i]);
+    drop_swept(light->swept);
     glDeleteTextures(1, &light->a);
     glDeleteTextures(1, &light->b);
     glDeleteTextures(1, &light->seen);
     glDeleteTextures(1, &light->shade_texture);
+    glDeleteTextures(1, &light->depth);
     free(light->lit);
     free(light->boxes);
     free(light->cells);
@@ -78,9 +88,26 @@ gl_fit gl_light_fit(const gl_light *light, const gl_order *order, double wider)
         if (!light->lit[i])
             return GL_MISSING;
         gl_fit own = gl_fit_sizes(light->lit[i]->wanted, wanted_cells(order, (size_t)i));
+        if (light->lit[i]->stale && own < GL_TOO_COARSE)
+            own = GL_TOO_COARSE;
         fit = own > fit ? own : fit;
     }
     return fit;
+}
+
+/* After an edit: all that is there is taken over or made again with the same cells, but what is of another place or medium. */
+static void choose_again(const gl_order *order, gl_light *light, int *cells)
+{
+    const gl_update *update = order->update;
+    for (size_t i = 0; i < order->volume->cloud_count; i++) {
+        gl_lit *last = order->light_from->lit[i];
+        if (!last || update->changes[i].all || update->replaced[i])
+            continue;
+        if (update->shaded[i])
+            cells[i] = last->cells;
+        else
+            light->lit[i] = share(last);
+    }
 }
 
 /* Takes over what does of the last light; of the rest cells[i] gets with how many cells it is lit, 0: not at all. */
@@ -97,8 +124,8 @@ static void choose(const gl_order *order, gl_light *light, int *cells)
             order->paper || order->all_clouds || (c->tree->count && gl_in_sight(c, &camera, GL_MARGIN));
         int own = near ? wanted_cells(order, i) : 0;
         bool good = last && near &&
-                    (order->missing_only || last->wanted == own ||
-                     (order->lenient && gl_fit_sizes(last->wanted, own) == GL_TOO_FINE));
+                    (order->missing_only || (last->wanted == own && !last->stale) ||
+                     (order->lenient && !last->stale && gl_fit_sizes(last->wanted, own) == GL_TOO_FINE));
         if (last && !near && order->lenient) {
             kept += cell_count(last->grid.size);
             good = kept <= GL_KEPT_CELLS;
@@ -110,8 +137,18 @@ static void choose(const gl_order *order, gl_light *light, int *cells)
     }
 }
 
+/* A cloud's light from before, of as many cells, whose densities are still true, or NULL. */
+static const gl_lit *earlier_of(const gl_order *order, size_t cloud, int cells)
+{
+    const gl_light *const lights[] = {order->light_from, order->dense_from};
+    for (int i = 0; i < 2; i++)
+        if (lights[i] && lights[i]->lit[cloud] && lights[i]->lit[cloud]->cells == cells)
+            return lights[i]->lit[cloud];
+    return NULL;
+}
+
 static shape_status build(const gl_order *order, const shape_sunsweep *sweep, size_t cloud, int cells,
-                          int threads, gl_lit **made, shape_error *error)
+                          int swept, int threads, gl_lit **made, shape_error *error)
 {
     gl_lit *lit = calloc(1, sizeof *lit);
     if (!lit)
@@ -121,10 +158,17 @@ static shape_status build(const gl_order *order, const shape_sunsweep *sweep, si
     options.threads = threads;
     options.sweep = sweep;
     options.scattering_resolution = order->scattering_cells;
+    options.stop = order->stop;
+    const gl_lit *last = earlier_of(order, cloud, cells);
+    options.from = last ? &last->grid : NULL;
+    if (order->update) {
+        options.change = &order->update->changes[cloud];
+        options.scattering = false;
+    }
     shape_status status =
-        order->paper
-            ? shape_lightgrid_build_2018(order->volume, cloud, order->light, cells, 0.1f, &lit->grid, error)
-            : shape_lightgrid_build(order->volume, cloud, order->light, &options, &lit->grid, error);
+        order->paper ? shape_lightgrid_build_2018_with(order->volume, cloud, order->light, cells, 0.1f,
+                                                       order->stop, &lit->grid, error)
+                     : shape_lightgrid_build(order->volume, cloud, order->light, &options, &lit->grid, error);
     atomic_init(&lit->uses, 1);
     if (!status && options.opaque && !order->paper)
         status = gl_shade_make(order, &options, cloud, lit, error);
@@ -133,19 +177,25 @@ static shape_status build(const gl_order *order, const shape_sunsweep *sweep, si
         return status;
     }
     lit->wanted = order->first ? 0 : cells; /* the first one fits no view */
+    if (order->update) {
+        lit->wanted = last->wanted;
+        lit->stale = true;
+    }
+    lit->cells = cells;
+    lit->swept = swept;
     *made = lit;
     return SHAPE_OK;
 }
 
 /* Each cloud on one thread. */
 static shape_status build_many(const gl_order *order, const shape_sunsweep *sweep, const int *cells,
-                               int threads, gl_light *light, shape_error *error)
+                               const int *swept, int threads, gl_light *light, shape_error *error)
 {
     shape_status status = SHAPE_OK;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (int i = 0; i < light->count; i++) {
         shape_error own = {0};
-        if (!cells[i] || !build(order, sweep, (size_t)i, cells[i], 1, &light->lit[i], &own))
+        if (!cells[i] || !build(order, sweep, (size_t)i, cells[i], swept[i], 1, &light->lit[i], &own))
             continue;
 #pragma omp critical
         {
@@ -155,6 +205,37 @@ static shape_status build_many(const gl_order *order, const shape_sunsweep *swee
         }
     }
     return status;
+}
+
+/* Sweeps; what the last sweep has of it is taken over. */
+static shape_status make_sweep(const gl_order *order, const int *swept, shape_sunsweep **sweep,
+                               shape_error *error)
+{
+    const gl_light *last = order->light_from;
+    const shape_sunsweep_options options = {.threads = order->threads,
+                                            .keep = order->lenient,
+                                            .from = last && last->swept ? last->swept->sweep : NULL,
+                                            .changes = order->update ? order->update->changes : NULL,
+                                            .stop = order->stop};
+    return shape_sunsweep_create_with(order->volume, order->light, swept, &options, sweep, error);
+}
+
+/* Keeps a sweep that is not too large for those that follow, while someone may edit; else destroys it. */
+static shape_status keep_sweep(const gl_order *order, shape_sunsweep *sweep, gl_light *light,
+                               shape_status status, shape_error *error)
+{
+    if (status || !order->lenient || shape_sunsweep_bytes(sweep) > GL_KEPT_SWEEP) {
+        shape_sunsweep_destroy(sweep);
+        return status;
+    }
+    light->swept = calloc(1, sizeof *light->swept);
+    if (!light->swept) {
+        shape_sunsweep_destroy(sweep);
+        return shape_error_memory(error);
+    }
+    atomic_init(&light->swept->uses, 1);
+    light->swept->sweep = sweep;
+    return SHAPE_OK;
 }
 
 /* Lights the chosen clouds, one after the other unless they are many. (Not one loop with an `if`: OpenMP makes new threads
@@ -171,19 +252,20 @@ static shape_status build_all(const gl_order *order, const int *cells, gl_light 
         chosen += cells[i] > 0;
         /* Twice as fine as the light: as near to the truth as a march from each cell, in a tenth of its time. */
         swept[i] = order->first || 2 * cells[i] > FINEST_SWEEP ? cells[i] : 2 * cells[i];
+        if (order->update && cells[i])
+            swept[i] = order->light_from->lit[i]->swept;
     }
     if (!status && chosen && !order->paper)
-        status = shape_sunsweep_create(order->volume, order->light, swept, order->threads, &sweep, error);
+        status = make_sweep(order, swept, &sweep, error);
     if (!status && chosen >= 2 * threads)
-        status = build_many(order, sweep, cells, threads, light, error);
+        status = build_many(order, sweep, cells, swept, threads, light, error);
     else
         for (int i = 0; i < count && !status; i++)
             if (cells[i])
-                status = build(order, sweep, (size_t)i, cells[i], threads, &light->lit[i], error);
+                status = build(order, sweep, (size_t)i, cells[i], swept[i], threads, &light->lit[i], error);
     light->made = chosen;
-    shape_sunsweep_destroy(sweep);
     free(swept);
-    return status;
+    return sweep ? keep_sweep(order, sweep, light, status, error) : status;
 }
 
 /* Places for all grids, and the scratch. */
@@ -236,7 +318,10 @@ shape_status gl_light_make(const gl_order *order, gl_light **made, shape_error *
     int *cells = calloc(count + 1, sizeof *cells);
     shape_status status = cells ? create((int)count, &light, error) : shape_error_memory(error);
     if (!status) {
-        choose(order, light, cells);
+        if (order->update)
+            choose_again(order, light, cells);
+        else
+            choose(order, light, cells);
         status = build_all(order, cells, light, error);
     }
     if (!status)
@@ -264,19 +349,22 @@ shape_status gl_light_join(const gl_light *first, const gl_light *second, int te
         return status;
     }
     light->made = first->made;
+    light->swept = first->swept ? first->swept : second->swept;
+    if (light->swept)
+        atomic_fetch_add(&light->swept->uses, 1);
     *made = light;
     return SHAPE_OK;
 }
 
-/* Values 0..3 (part 0) or 4..7 (part 1) of all grids as one texture. */
-static GLuint value_texture(gl_light *light, int part)
+/* `values` of each cell, from value `first` on, of all grids as one texture. */
+static GLuint value_texture(gl_light *light, int first, size_t values)
 {
     memset(light->cells, 0, cell_count(light->size) * 4 * sizeof *light->cells);
     for (int i = 0; i < light->count; i++) {
         const gl_box *box = &light->boxes[i];
         if (!light->lit[i])
             continue;
-        const float *from = light->lit[i]->grid.cells + 4 * part;
+        const float *from = light->lit[i]->grid.cells + first;
         for (int z = 0; z < box->size[2]; z++)
             for (int y = 0; y < box->size[1]; y++) {
                 float *to =
@@ -284,18 +372,27 @@ static GLuint value_texture(gl_light *light, int part)
                     (((size_t)(box->place[2] + z) * (size_t)light->size[1] + (size_t)(box->place[1] + y)) *
                          (size_t)light->size[0] +
                      (size_t)box->place[0]) *
-                        4;
-                for (int x = 0; x < box->size[0]; x++, from += SHAPE_LIGHTGRID_VALUES)
-                    memcpy(to + 4 * x, from, 4 * sizeof *to);
+                        values;
+                for (size_t x = 0; x < (size_t)box->size[0]; x++, from += SHAPE_LIGHTGRID_VALUES)
+                    memcpy(to + values * x, from, values * sizeof *to);
             }
     }
-    return gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, light->cells);
+    return values == 1 ? gl_volume_texture(light->size, GL_R32F, GL_RED, GL_FLOAT, light->cells)
+                       : gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, light->cells);
 }
 
 void gl_light_upload(gl_light *light)
 {
-    light->a = value_texture(light, 0);
-    light->b = value_texture(light, 1);
+    light->a = value_texture(light, 0, 4);
+    light->b = value_texture(light, 4, 4);
+}
+
+void gl_light_upload_depths(gl_light *light, shape_gl_renderer *renderer)
+{
+    if (light->depth)
+        return;
+    light->depth = value_texture(light, 0, 1);
+    renderer->costs.light_bytes += cell_count(light->size) * sizeof *light->cells;
 }
 
 void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *volume)
@@ -311,9 +408,11 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
 static void compose_one(const gl_light *light, const shape_gl_renderer *r, shape_dvec3 eye, int cloud,
                         float *to)
 {
-    if (light->lit[cloud])
-        shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light, r->sky_upper,
-                             r->sky_lower, eye, to);
+    if (!light->lit[cloud])
+        return;
+    shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light, r->sky_upper,
+                         r->sky_lower, eye, to);
+    gl_law_glow(r, &r->volume->clouds[cloud].medium, cell_count(light->boxes[cloud].size), to);
 }
 
 /* Where each shown cloud's cells begin in the scratch, which is as large as all of them together. */

@@ -19,6 +19,8 @@ shape_gl_options shape_gl_defaults(void)
 {
     shape_gl_options options = {
         .method = SHAPE_GL_DEFAULT, .light = shape_lightgrid_defaults(), .bake_voxels = 12000000, .seed = 1};
+    options.lighting.powder = 2;
+    options.lighting.octaves = 8;
     return options;
 }
 
@@ -52,8 +54,8 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     if (options->method != SHAPE_GL_DEFAULT || folder)
         made->options.early = false;
     shape_status status = SHAPE_OK;
-    if (options->method == SHAPE_GL_DEFAULT && !made->options.early)
-        status = gl_preview_compile(made, GL_PREVIEW_PROGRAMS, error);
+    if (options->method == SHAPE_GL_DEFAULT)
+        status = gl_make_programs(made, error);
     if (!status && !made->options.early)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
@@ -81,6 +83,8 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
         return;
     gl_refine_stop(renderer);
     shape_gl_first_free(renderer->first);
+    gl_update_free(&renderer->update);
+    gl_light_drop(renderer->earlier);
     gl_scene_free(&renderer->scene);
     gl_grids_drop(&renderer->grids);
     gl_grids_drop(&renderer->last_grids);
@@ -126,8 +130,10 @@ static bool is_plain(const shape_volume *volume)
 }
 
 /* What the shaders of the whole picture may leave out for a volume: a number for each such set of lines. */
-static int view_defines(const shape_volume *volume, bool air, char *defines, size_t size)
+static int view_defines(const shape_gl_renderer *renderer, char *defines, size_t size)
 {
+    const shape_volume *volume = renderer->volume;
+    bool air = gl_has_air(renderer);
     const shape_volume_cloud *c = volume->cloud_count == 1 ? &volume->clouds[0] : NULL;
     bool plain = is_plain(volume), spheres = c && !c->list->ellipsoid_count;
     int octaves = c ? c->field.octaves : 0;
@@ -135,7 +141,8 @@ static int view_defines(const shape_volume *volume, bool air, char *defines, siz
              spheres ? "#define SPHERES_ONLY\n" : "", air ? "#define AIR\n" : "");
     if (c)
         snprintf(defines + strlen(defines), size - strlen(defines), "#define OCTAVES %d\n", octaves);
-    return 1 + plain + 2 * spheres + 4 * air + 8 * octaves;
+    gl_law_define(renderer, defines, size);
+    return 1 + plain + 2 * spheres + 4 * air + 8 * octaves + 1024 * (int)gl_law(renderer);
 }
 
 /* The view program of the methods that have one for the whole picture, as fits the volume; listed: the one that reads
@@ -145,7 +152,7 @@ static shape_status find_program(shape_gl_renderer *renderer, bool listed, GLuin
 {
     enum { ROOM = 160 };
     char defines[ROOM];
-    int kind = view_defines(renderer->volume, gl_has_air(renderer), defines, ROOM);
+    int kind = view_defines(renderer, defines, ROOM);
     GLuint *known = &renderer->view_programs[listed];
     if (renderer->view_kinds[listed] != kind) {
         glDeleteProgram(*known);
@@ -176,10 +183,15 @@ static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *er
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
 {
     double start = now_ms();
+    bool stays = gl_update_begin(renderer, volume);
     gl_refine_stop(renderer);
-    gl_grids_drop(&renderer->grids);
+    gl_light_drop(renderer->earlier);
+    renderer->earlier = NULL;
     gl_grids_drop(&renderer->last_grids);
-    gl_pool_free(&renderer->pool);
+    if (!stays) {
+        gl_grids_drop(&renderer->grids);
+        gl_pool_free(&renderer->pool);
+    }
     renderer->fade_left = 0;
     renderer->volume = volume;
     renderer->window_length = window_length(volume);
@@ -201,17 +213,24 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     return status;
 }
 
-/* Programs with air, or without. */
-static shape_status change_air(shape_gl_renderer *renderer, shape_error *error)
+shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error)
 {
     bool air = gl_has_air(renderer);
-    if (air == renderer->with_air)
+    int wanted = 2 + air + 2 * (int)gl_law(renderer), made_for = renderer->made_for;
+    if (wanted == made_for)
         return SHAPE_OK;
-    renderer->with_air = air;
-    if (renderer->options.method != SHAPE_GL_DEFAULT)
-        return prepare_program(renderer, error);
-    gl_preview_drop_programs(&renderer->preview);
-    return renderer->options.early ? SHAPE_OK : gl_preview_compile(renderer, GL_PREVIEW_PROGRAMS, error);
+    renderer->made_for = 0;
+    shape_status status = SHAPE_OK;
+    if (renderer->options.method == SHAPE_GL_DEFAULT) {
+        gl_preview_drop_programs(&renderer->preview, made_for && made_for % 2 == wanted % 2);
+        if (!renderer->options.early)
+            status = gl_preview_compile(renderer, GL_PREVIEW_PROGRAMS, error);
+    } else if (renderer->volume) {
+        status = prepare_program(renderer, error);
+    }
+    if (!status)
+        renderer->made_for = wanted;
+    return status;
 }
 
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
@@ -223,7 +242,7 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
-    return change_air(renderer, error);
+    return gl_make_programs(renderer, error);
 }
 
 int shape_gl_largest(void)
@@ -310,6 +329,7 @@ shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, boo
     glViewport(0, 0, frame->part->width, frame->part->height);
     gl_set_scene(&renderer->scene, program);
     gl_set_grids(&renderer->grids, program);
+    gl_set_law(renderer, &renderer->grids, program);
     gl_set_tiles(frame->tiles, program);
     gl_set_light(renderer, program);
     gl_set_camera(frame, program);
@@ -341,7 +361,7 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
 /* Whether moving pictures are still drawn without shaders. */
 static bool is_early(const shape_gl_renderer *r)
 {
-    return r->options.early && !r->options.light.opaque && !gl_has_air(r) &&
+    return r->options.early && !r->options.light.opaque && !gl_has_air(r) && gl_law(r) == SHAPE_GL_LAW_GRID &&
            r->preview.warm < gl_preview_needed(r);
 }
 
@@ -351,12 +371,7 @@ static shape_status draw_early(shape_gl_renderer *renderer, const gl_grids *grid
 {
     shape_status status = SHAPE_OK;
     if (renderer->early_drawn)
-        status = gl_refine_send(renderer, error);
-    if (renderer->early_drawn && !status) {
-        gl_baked_place(grids->baked, &renderer->scene);
-        gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
         status = gl_preview_warm(renderer, grids, frame, error);
-    }
     renderer->early_drawn = true;
     return status ? status : gl_early_draw(renderer, grids, frame, error);
 }
@@ -367,9 +382,13 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
     gl_light_place(grids->light, &renderer->scene, renderer->volume);
     if (grids->baked)
         gl_baked_place(grids->baked, &renderer->scene);
+    if (gl_law(renderer) != SHAPE_GL_LAW_GRID) {
+        gl_light_upload_depths(grids->light, renderer);
+        gl_law_place(renderer, &renderer->scene);
+    }
     gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
     shape_status status = SHAPE_OK;
-    if (frame->sample == 0 && !is_paper(renderer))
+    if (frame->sample == 0 && !is_paper(renderer) && gl_law(renderer) == SHAPE_GL_LAW_GRID)
         status = gl_light_compose(grids->light, renderer, frame->camera->origin, error);
     if (status)
         return status;
@@ -394,6 +413,8 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
     shape_status status = prepare_targets(renderer, part->width, part->height, error);
     if (!moving)
         renderer->fade_left = 0; /* a picture at rest is of the last grids alone */
+    if (!status)
+        status = gl_refine_send(renderer, error);
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)

@@ -184,6 +184,41 @@ bool gl_pool_send(gl_pool *pool, const gl_baked *baked, size_t most, size_t *byt
     return all;
 }
 
+/* Bricks [x, x + run) of a row of them. */
+static void send_run(const gl_dense *dense, int x, int y, int z, int run)
+{
+    enum { BRICK = SHAPE_BAKE_BRICK };
+    const int *n = dense->baked.size, *place = dense->place;
+    const size_t first =
+        ((size_t)(z * BRICK) * (size_t)n[1] + (size_t)(y * BRICK)) * (size_t)n[0] + (size_t)(x * BRICK);
+    glTexSubImage3D(GL_TEXTURE_3D, 0, place[0] + x * BRICK, place[1] + y * BRICK, place[2] + z * BRICK,
+                    run * BRICK, BRICK, BRICK, GL_RG, GL_UNSIGNED_BYTE, dense->baked.voxels + 2 * first);
+}
+
+void gl_pool_patch(const gl_pool *pool, const gl_dense *dense, const uint8_t *bricks, size_t *bytes)
+{
+    enum { BRICK = SHAPE_BAKE_BRICK };
+    const int *n = dense->baked.size, nx = n[0] / BRICK, rows = n[1] / BRICK * (n[2] / BRICK);
+    if (!dense->resident || dense->sent < n[2])
+        return; /* what is to be sent yet is sent as it is now */
+    glBindTexture(GL_TEXTURE_3D, pool->texture);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, n[0]);
+    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, n[1]);
+    for (int row = 0; row < rows; row++)
+        for (int x = 0, run; x < nx; x += run) {
+            const uint8_t *flags = bricks + (size_t)row * (size_t)nx;
+            for (run = 1; x + run < nx && !flags[x] == !flags[x + run];)
+                run++;
+            if (!flags[x])
+                continue;
+            send_run(dense, x, row % (n[1] / BRICK), row / (n[1] / BRICK), run);
+            *bytes += (size_t)run * 2 * BRICK * BRICK * BRICK;
+        }
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glPixelStorei(GL_UNPACK_IMAGE_HEIGHT, 0);
+}
+
 void gl_pool_keep(gl_pool *pool, const gl_baked *const sets[], int count)
 {
     size_t kept = 0;

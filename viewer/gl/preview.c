@@ -1,6 +1,7 @@
 /* The default method's passes: tiles without a cloud, with one, and with several each have a shader of their own, since
  * a shader that can do all pays for all in every pixel. A moving view is marched at every second pixel each way first;
  * the others are filled from these where they agree, and marched where they do not. */
+#include <stdio.h>
 #include <string.h>
 
 #include "gl_private.h"
@@ -27,13 +28,14 @@ shape_status gl_preview_compile(shape_gl_renderer *r, int count, shape_error *er
                                       {"view/fullscreen.vert", "view/preview_fill.frag"},
                                       {"view/tile.vert", "view/preview.frag"},
                                       {"view/tile.vert", "view/preview_sky.frag"}};
-    const char *defines = r->with_air ? "#define AIR\n" : "";
+    char defines[64];
+    snprintf(defines, sizeof defines, "%s", gl_has_air(r) ? "#define AIR\n" : "");
+    gl_law_define(r, defines, sizeof defines);
     shape_status status = SHAPE_OK;
-    for (int i = r->preview.compiled; i < count && !status; i++) {
-        status = gl_program_create(r->options.shader_folder, sources[i].vertex, sources[i].fragment, defines,
-                                   program_number(&r->preview, i), error);
-        r->preview.compiled += !status;
-    }
+    for (int i = 0; i < count && !status; i++)
+        if (!*program_number(&r->preview, i))
+            status = gl_program_create(r->options.shader_folder, sources[i].vertex, sources[i].fragment,
+                                       defines, program_number(&r->preview, i), error);
     return status;
 }
 
@@ -42,18 +44,20 @@ int gl_preview_needed(const shape_gl_renderer *r)
     return r->volume->cloud_count > 1 ? GL_PREVIEW_PROGRAMS - 1 : GL_PREVIEW_PROGRAMS - 2;
 }
 
-void gl_preview_drop_programs(gl_preview *preview)
+void gl_preview_drop_programs(gl_preview *preview, bool marching)
 {
     for (int i = 0; i < GL_PREVIEW_PROGRAMS; i++) {
-        glDeleteProgram(*program_number(preview, i));
-        *program_number(preview, i) = 0;
+        GLuint *program = program_number(preview, i);
+        if (marching && program != &preview->one && program != &preview->several)
+            continue;
+        glDeleteProgram(*program);
+        *program = 0;
     }
-    preview->compiled = preview->warm = 0;
 }
 
 void gl_preview_free(gl_preview *preview)
 {
-    gl_preview_drop_programs(preview);
+    gl_preview_drop_programs(preview, false);
     gl_target_free(&preview->coarse);
     gl_target_free(&preview->sky_picture);
     memset(preview, 0, sizeof *preview);
@@ -98,6 +102,7 @@ static void set_all(const shape_gl_renderer *r, const gl_pass *pass, GLuint prog
     glUseProgram(program);
     gl_set_scene(&r->scene, program);
     gl_set_grids(pass->grids, program);
+    gl_set_law(r, pass->grids, program);
     gl_set_tiles(pass->frame->tiles, program);
     gl_set_camera(pass->frame, program);
     gl_set_method(r, pass->frame->view, program);

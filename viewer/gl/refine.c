@@ -27,7 +27,8 @@ struct gl_refinement {
     shape_light light; /* a copy: the renderer's may change */
     gl_grids from;     /* what is taken over; held until the end */
     bool old_light;    /* the sun has moved since: what it makes of light is of no use */
-    atomic_bool done;
+    gl_light *earlier; /* the same; NULL: none */
+    atomic_bool done, stop;
     gl_grids made;
     double ms[2]; /* that its light and density took */
     shape_status status;
@@ -64,6 +65,11 @@ static void *work(void *data)
     return NULL;
 }
 
+static bool is_stopped(void *job)
+{
+    return atomic_load(&((gl_refinement *)job)->stop);
+}
+
 /* Waits for the thread and throws away what it still has. */
 static void end_job(shape_gl_renderer *r)
 {
@@ -73,12 +79,15 @@ static void end_job(shape_gl_renderer *r)
     pthread_join(job->thread, NULL);
     gl_grids_drop(&job->made);
     gl_grids_drop(&job->from);
+    gl_light_drop(job->earlier);
     free(job);
     r->refinement = NULL;
 }
 
 void gl_refine_stop(shape_gl_renderer *r)
 {
+    if (r->refinement)
+        atomic_store(&r->refinement->stop, true);
     end_job(r);
     gl_grids_drop(&r->coming);
 }
@@ -104,8 +113,15 @@ static void start(shape_gl_renderer *r, const gl_order *order)
     job->from = hold(&r->grids);
     job->order.light_from = job->from.light;
     job->order.baked_from = job->from.baked;
+    job->order.stop = (shape_stop){is_stopped, job};
+    if (r->earlier) {
+        job->earlier = r->earlier; /* it has done what it was kept for */
+        r->earlier = NULL;
+    }
+    job->order.dense_from = job->earlier;
     if (pthread_create(&job->thread, NULL, work, job)) {
         gl_grids_drop(&job->from);
+        gl_light_drop(job->earlier);
         free(job);
     } else {
         r->refinement = job;
@@ -241,7 +257,8 @@ static shape_status make_now(shape_gl_renderer *r, const gl_order *order, shape_
         if (!r->options.background) /* places do not depend on what was there before */
             gl_pool_free(&r->pool);
         take_baked(r, made.baked);
-        if (!r->early || r->early_drawn) /* the very first picture needs none */
+        r->unsent = r->early && !r->early_drawn; /* the very first picture needs none */
+        if (!r->unsent)
             status = send(r, made.baked, SIZE_MAX, order->texture_limit, &all, error);
     }
     return status;
@@ -252,6 +269,10 @@ shape_status gl_refine_send(shape_gl_renderer *r, shape_error *error)
     GLint largest = 256;
     bool all;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    const bool unsent = r->unsent;
+    r->unsent = false;
+    if (!unsent || !r->grids.baked)
+        return SHAPE_OK;
     return send(r, r->grids.baked, SIZE_MAX, largest, &all, error);
 }
 
@@ -259,13 +280,16 @@ static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
 {
     GLint largest = 256;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    shape_lightgrid_options light_options = r->options.light;
+    light_options.scattering = light_options.scattering && gl_law(r) == SHAPE_GL_LAW_GRID;
     return (gl_order){.volume = r->volume,
                       .light = &r->light,
                       .paper = r->options.method == SHAPE_GL_PAPER || r->options.method == SHAPE_GL_PAPER_NDT,
-                      .light_options = r->options.light,
+                      .light_options = light_options,
                       .all_clouds = r->options.light.opaque || gl_has_air(r),
                       .view = *view,
                       .bake_voxels = r->options.bake_voxels,
+                      .stop = r->options.stop,
                       .texture_limit = largest};
 }
 
@@ -314,10 +338,24 @@ static shape_status make_first(shape_gl_renderer *r, const gl_order *order, shap
     return status ? status : extend_last(r, order->texture_limit, error);
 }
 
+/* The sun has moved: the densities of the light's cells stay true, for the light that is to come. */
+static void keep_densities(shape_gl_renderer *r)
+{
+    if (!r->grids.light || r->earlier)
+        return;
+    r->earlier = r->grids.light;
+    r->earlier->uses++;
+}
+
 static shape_status prepare_in_background(shape_gl_renderer *r, gl_order *order, shape_error *error)
 {
     shape_status status = collect(r, error);
+    if (!status && r->update.pending)
+        status = gl_update_do(r, order, error);
+    if (status)
+        return status;
     if (r->light_changed) {
+        keep_densities(r);
         if (r->refinement)
             r->refinement->old_light = true;
         gl_light_drop(r->coming.light);
@@ -329,6 +367,7 @@ static shape_status prepare_in_background(shape_gl_renderer *r, gl_order *order,
         return status;
     order->lenient = true;
     order->light_from = r->light_changed ? NULL : r->grids.light;
+    order->dense_from = r->grids.light;
     order->baked_from = r->grids.baked;
     gl_fit light = order->light_from ? gl_light_fit(r->grids.light, order, 1) : GL_MISSING;
     gl_fit baked = r->grids.baked ? gl_baked_fit(r->grids.baked, order, 1) : GL_MISSING;

@@ -30,9 +30,30 @@ typedef enum shape_gl_method {
     SHAPE_GL_PAPER_NDT /* the same with Algorithm 2's sweep in the view */
 } shape_gl_method;
 
+/* By what a point of a cloud is lit, by the methods default and exact: the lights of shape/march.h that need the light pass
+ * alone, whose cells the laws take the optical depth to the sun from. */
+typedef enum shape_gl_law {
+    SHAPE_GL_LAW_GRID, /* all scatterings of sun and sky */
+    SHAPE_GL_LAW_SINGLE,
+    SHAPE_GL_LAW_POWDER,
+    SHAPE_GL_LAW_POWDER_ANGLE,
+    SHAPE_GL_LAW_BEER_MAX,
+    SHAPE_GL_LAW_OCTAVES
+} shape_gl_law;
+
+/* The members are those of shape_march_options. The methods of 2018 have a light of their own, and nothing of this. */
+typedef struct shape_gl_lighting {
+    shape_gl_law law;
+    float powder;      /* k of the powder laws, 0 to 1000 */
+    int octaves;       /* copies that octaves sum, 1 to 8 */
+    float ambient[3];  /* radiance that reaches every point alike, 0 to 1e9 */
+    float emission[3]; /* of density 1, radiance a metre, 0 to 1e9; clouds of extinction 0 show none */
+} shape_gl_lighting;
+
 typedef struct shape_gl_options {
     shape_gl_method method;
-    const char *shader_folder; /* read shaders from here instead of the built-in ones; NULL */
+    shape_gl_lighting lighting; /* to begin with; default: by the grid, powder 2, 8 octaves, nothing else */
+    const char *shader_folder;  /* read shaders from here instead of the built-in ones; NULL */
     shape_lightgrid_options light;
     size_t bake_voxels; /* of all clouds' baked grids together, at most */
     uint64_t seed;      /* of the random starts of rays; default 1 */
@@ -42,6 +63,9 @@ typedef struct shape_gl_options {
     bool
         early; /* default method: moving views of clouds alone are drawn on the CPU until the shaders are compiled, which
                    happens bit by bit meanwhile; no matter with a shader_folder, opaque things or air */
+    /* Asked while something is made that a picture waits for; where it is true, drawing returns SHAPE_ERROR_STOPPED, and may be
+     * tried again. What is made meanwhile, on a thread, ends with the next load or the renderer. Default none. */
+    shape_stop stop;
     bool paper_lod; /* the paper's printed distance formula for its step, rather than 0.1 */
 } shape_gl_options;
 
@@ -55,6 +79,8 @@ typedef struct shape_gl_costs {
     double steps_per_pixel, fetches_per_pixel; /* of the last picture read by shape_gl_read */
     size_t lit_clouds,
         baked_clouds; /* how often a cloud's light was made, and its density baked, since the beginning */
+    size_t relit_clouds,
+        rebaked_clouds; /* how often only what an edit changed was made again of a cloud's light, and of its density */
     size_t light_bytes,
         baked_bytes; /* that were sent to the GPU, of light as seen and of baked density, since then */
 } shape_gl_costs;
@@ -77,10 +103,20 @@ void shape_gl_first_free(shape_gl_first *first); /* NULL is allowed */
 /* The renderer takes it over. It is used where the first picture is of that volume, light and view, and no matter else. */
 void shape_gl_take_first(shape_gl_renderer *renderer, shape_gl_first *first);
 
-/* Uploads a volume; it must live until the next load or the end. */
+/* Uploads a volume; it must live until the next load has returned, or the end. With options.background the default method
+ * compares it with the one before, cloud by cloud: grids of clouds that have not changed stay, and where few primitives have,
+ * they are made again only there (shape/change.h), with the next picture; the scattered light follows, as does all that is
+ * made meanwhile. shape_volume_keep_boxes makes that likelier. */
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error);
+/* Whether, if this volume were loaded, the grids that are there would stay but for what an edit changed, so that the next
+ * picture would not have to wait for others. */
+bool shape_gl_stays(const shape_gl_renderer *renderer, const shape_volume *volume);
 /* Sets the light; needed after shape_gl_load. The light pass, on the CPU, is made before the next picture. */
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error);
+
+/* Sets by what the clouds are lit. Compiles shaders where it is another law. */
+shape_status shape_gl_set_lighting(shape_gl_renderer *renderer, const shape_gl_lighting *lighting,
+                                   shape_error *error);
 
 /* A part of a picture: x and y of its lower left corner, from the whole's, in pixels; both multiples of
  * SHAPE_GL_PART_STEP, so that parts join without a seam: they are what the whole would be. */

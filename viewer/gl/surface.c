@@ -220,6 +220,10 @@ void gl_surface_draw(shape_gl_renderer *r, const gl_frame *frame)
     glClearBufferfv(GL_COLOR, 1, no_work);
     glClearBufferfv(GL_DEPTH, 0, &far);
     gl_set_light(r, program);
+    if (!gl_law_has_sky(gl_law(r))) {
+        gl_set_vector(program, "sky_upper", nothing);
+        gl_set_vector(program, "sky_lower", nothing);
+    }
     gl_set_camera(frame, program);
     gl_shade_set(r, program, s->clouds, eye, NULL); /* without memory: no shadow of clouds on things */
     gl_set_things(r, program, eye); /* after it, which binds textures to whatever unit is active */

@@ -15,6 +15,7 @@ shape_status gl_shade_make(const gl_order *order, const shape_lightgrid_options 
     shape_lightgrid_options options = *light_options;
     options.opaque = NULL;
     options.scattering = false;
+    options.from = NULL;
     shape_status status = shape_lightgrid_build(order->volume, cloud, order->light, &options, &grid, error);
     if (status)
         return status;

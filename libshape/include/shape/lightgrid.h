@@ -3,6 +3,7 @@
 #ifndef SHAPE_LIGHTGRID_H
 #define SHAPE_LIGHTGRID_H
 
+#include "shape/change.h"
 #include "shape/opaque.h"
 #include "shape/sunsweep.h"
 #include "shape/view.h"
@@ -22,11 +23,12 @@ extern "C" {
 enum { SHAPE_LIGHTGRID_VALUES = 8 };
 
 typedef struct shape_lightgrid {
-    int size[3];     /* cells along x, y, z; cell centres lie half a cell inside the box */
-    shape_box box;   /* cloud's frame */
-    float *cells;    /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
-    float *albedos;  /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
-    uint64_t visits; /* what it took: cells times rounds of the solution for scattered light */
+    int size[3];      /* cells along x, y, z; cell centres lie half a cell inside the box */
+    shape_box box;    /* cloud's frame */
+    float *cells;     /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
+    float *densities; /* mean densities of the cells, where scattered light has been solved for; else NULL */
+    float *albedos;   /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
+    uint64_t visits;  /* what it took: cells times rounds of the solution for scattered light */
 } shape_lightgrid;
 
 typedef struct shape_lightgrid_options {
@@ -41,6 +43,12 @@ typedef struct shape_lightgrid_options {
         *sweep; /* of this volume and light, with this cloud: take value 0 from it; default NULL: march */
     int scattering_resolution; /* solve the scattered light by no more cells along the longest side than this, and
                                     interpolate; default 0: by all */
+    /* A grid of the same cloud, made earlier: of what it was, or under another light; default NULL. Where it has the same cells
+     * its densities are kept, but those that `change` touches; without scattering, values 1 to 7, and densities, too. The
+     * grid then is what it would be without `from`, to the bit, but for those values. */
+    const struct shape_lightgrid *from;
+    const shape_change *change; /* what has changed of the cloud since; default NULL: nothing */
+    shape_stop stop;            /* to break off; default none */
 } shape_lightgrid_options;
 
 shape_lightgrid_options shape_lightgrid_defaults(void);
@@ -57,6 +65,10 @@ shape_status shape_lightgrid_build(const shape_volume *volume, size_t cloud, con
 shape_status shape_lightgrid_build_2018(const shape_volume *volume, size_t cloud, const shape_light *light,
                                         int resolution, float step, shape_lightgrid *grid,
                                         shape_error *error);
+/* The same, but it can be broken off. */
+shape_status shape_lightgrid_build_2018_with(const shape_volume *volume, size_t cloud,
+                                             const shape_light *light, int resolution, float step,
+                                             shape_stop stop, shape_lightgrid *grid, shape_error *error);
 void shape_lightgrid_free(shape_lightgrid *grid);
 
 /* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid

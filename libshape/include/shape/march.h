@@ -63,6 +63,8 @@ typedef enum shape_march_shadow {
     SHAPE_SHADOW_GRID /* kept in a grid around each cloud, computed once (003) */
 } shape_march_shadow;
 
+enum { SHAPE_MARCH_OCTAVES_MAX = 8 };
+
 typedef struct shape_march_options {
     shape_rule rule;
     shape_march_light light;
@@ -82,11 +84,14 @@ typedef struct shape_march_options {
                                throws shadows. Read by shape_marcher_create alone. NULL (default): all alike */
     int samples;     /* rays a pixel, 1 to 4096; default 1 */
     double powder; /* k of the powder laws, 0 to 1000; default 2 */
+    int octaves;   /* copies that SHAPE_MARCH_OCTAVES sums, 1 to SHAPE_MARCH_OCTAVES_MAX; default that */
     double shade; /* multiplies depths to the sun, 0 to 1 (sigma' of Páleník 2016 section 3.3); default 1 */
     double forward;    /* share of scattering that Harris' light keeps, 0 to 1; default 0.5 */
     float emission[3]; /* of density 1, radiance a metre (epsilon of section 3.3 there); default 0 */
-    bool silver;       /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
-    double lock;       /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
+    float ambient
+        [3]; /* radiance that reaches every point alike from all round, whatever lies between (001); default 0 */
+    bool silver; /* Henyey-Greenstein with g = 1 - opacity of a step (section 2.3): bright thin rims */
+    double lock; /* ray starts are moved to a grid of so many points a metre (section 5.1); 0: not */
     /* A ray ends where less than this share of what is behind gets through, and a way to the sun through voxels where
      * less of the sun does; 1e-12 to 0.1; default 1e-8. */
     double cutoff;

@@ -27,7 +27,7 @@
  *   32      layer: A, B, coverage, cut
  *   33      layer: falloff, fades at the bottom, the top, the sides
  *   34      layer: 1 / cell along x, y, z
- *   35      not used
+ * *   35      the program's own (the viewer keeps ambient light and emission there); 0 without
  */
 #ifndef SHAPE_RECORD_H
 #define SHAPE_RECORD_H

@@ -15,7 +15,8 @@ typedef enum shape_status {
     SHAPE_ERROR_FORMAT,   /* the bytes or text read are not what they should be */
     SHAPE_ERROR_IO,       /* the system could not read or write */
     SHAPE_ERROR_LIMIT,    /* a stated limit would be passed */
-    SHAPE_ERROR_SYSTEM    /* something outside the library is missing (GL, a driver) */
+    SHAPE_ERROR_SYSTEM,   /* something outside the library is missing (GL, a driver) */
+    SHAPE_ERROR_STOPPED   /* the caller broke the work off (shape_stop) */
 } shape_status;
 
 /* One mistake in one line, without a newline and without the program's name. */
@@ -47,6 +48,15 @@ shape_status shape_error_memory(shape_error *error);
 
 /* Of long work, called now and then by one thread. done is the share of the work, 0 to 1; false ends the work. */
 typedef bool (*shape_progress)(void *context, double done);
+
+/* A way to break long work off, of functions that have a shape_stop among their options; zeroed: none. asked(context) is
+ * called by every thread of the work, several at once, about every few milliseconds of each one's own: it must be
+ * thread-safe and quick (an atomic flag), and once it is true it must stay true until the function has returned. That then
+ * gives back what it took, and returns SHAPE_ERROR_STOPPED. */
+typedef struct shape_stop {
+    bool (*asked)(void *context);
+    void *context;
+} shape_stop;
 
 /* The library's version, "major.minor.patch". Static storage. */
 const char *shape_version(void);

@@ -37,6 +37,9 @@ typedef struct shape_volume_cloud {
     float inverse_displace_scale, inverse_detail_scale, inverse_detail_depth;
     shape_vec3 inverse_cell; /* of a layer's noise, stretched */
     uint32_t keys[4];        /* see shape_noise_key */
+    const shape_stop
+        *stop; /* asked on long ways through the primitives of one point; where it is true, the density
+                                is of no use. For copies of a cloud that work can be broken off with; default NULL */
 } shape_volume_cloud;
 
 typedef struct shape_volume {
@@ -103,10 +106,13 @@ bool shape_sphere_intersect(const shape_sphere *sphere, float support, shape_ray
 bool shape_ellipsoid_intersect(const shape_ellipsoid *ellipsoid, float support, shape_ray ray,
                                shape_candidate *hit);
 
-/* A growing list of candidates; zero it before first use, free it with shape_candidates_free. One a thread. */
+/* A growing list of candidates; zero it before first use, free it with shape_candidates_free. One a thread. stop may be set
+ * then: shape_cloud_candidates and shape_volume_optical_depth ask it. */
 typedef struct shape_candidates {
     shape_candidate *items;
     size_t count, capacity;
+    shape_stop stop;
+    size_t work; /* done since it was asked last */
 } shape_candidates;
 
 /* All supports that the ray meets within (t_min, t_max), sorted by entry; entries and exits are not clipped. The list
