@@ -1,4 +1,5 @@
-# neph-view loads OpenVDB with the first .vdb and not before: libraries are what it would wait for longest. $1: programs.
+# neph-view, neph-render and neph-mesh load OpenVDB with the first .vdb and not before: it takes longer to load than all else
+# that they need. $1: programs.
 set -eu
 bin=$1
 temporary=$(mktemp -d)
@@ -11,10 +12,12 @@ fail()
     exit 1
 }
 
+for program in neph-view neph-render neph-mesh; do
+    if [ -x "$bin/$program" ] && ldd "$bin/$program" | grep -q openvdb; then
+        fail "$program is linked to OpenVDB"
+    fi
+done
 [ -x "$bin/neph-view" ] || exit 0
-if command -v ldd >/dev/null && ldd "$bin/neph-view" | grep -q openvdb; then
-    fail "neph-view is linked to OpenVDB"
-fi
 "$bin/neph-gauss" -q --count 3 -o three.neph
 "$bin/neph-vdb" -q three.neph --resolution 24 -o three.vdb
 "$bin/neph-view" -q three.vdb --headless --size 32x18 --samples 1 --light-grid 8 -o three.pfm || fail "no picture of a .vdb"
