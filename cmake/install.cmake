@@ -49,6 +49,14 @@ foreach(program ${NEPHELE_PROGRAMS})
   install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endforeach()
 
+# What programs load when they are given a .vdb.
+install(TARGETS nephele_openvdb LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/nephele COMPONENT programs)
+foreach(program neph-view neph-render neph-mesh)
+  if(TARGET ${program})
+    set_property(TARGET ${program} APPEND PROPERTY INSTALL_RPATH "$ORIGIN/${library_from_bin}/nephele")
+  endif()
+endforeach()
+
 # --- manual pages and completion, printed by the programs themselves from their option tables
 set(NEPHELE_PAGES "")
 if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR)

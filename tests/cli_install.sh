@@ -56,6 +56,13 @@ done
 "$bin/neph-lsys" -q "$root/share/nephele/examples/spiral.lsys" | "$bin/neph-info" - >/dev/null ||
     fail "the installed example does not go through the installed programs"
 
+# --- and what neph-view loads late is found from there
+if [ -x "$bin/neph-view" ]; then
+    "$bin/neph-gauss" -q --count 3 | "$bin/neph-vdb" -q - --resolution 24 -o three.vdb
+    "$bin/neph-view" -q three.vdb --headless --size 16x9 --samples 1 --light-grid 8 -o three.pfm ||
+        fail "the installed neph-view does not read a .vdb"
+fi
+
 [ -s "$root/share/nephele/examples/blender/nephele_addon.py" ] || fail "the Blender add-on is not installed"
 
 # --- what libshape.so exports

@@ -110,7 +110,7 @@ awk -F, -v json="$(sed -n 's/.*"\(largest_jump\|clouds_lit\)": *\([0-9.e+-]*\).*
 # --- bench: every key of the contract, numbers in their order
 "$bin/neph-view" spiral.neph -q --bench 3 --size 32x18 --light-grid 8 -o last.png >bench.json || fail "--bench failed"
 [ -s last.png ] || fail "--bench with -o wrote no last frame"
-for key in method size frames load_ms light_ms bake_ms first_picture_ms frame_ms min median p95 processor_ms_min processor_ms_median primitives \
+for key in method size frames load_ms light_ms bake_ms first_picture_ms libraries_ms context_ms first_frame_ms frame_ms min median p95 processor_ms_min processor_ms_median primitives \
     steps_per_pixel fetches_per_pixel cpu_ms memory_bytes light_bytes baked_bytes; do
     grep -q "\"$key\":" bench.json || fail "the bench's JSON lacks $key"
 done

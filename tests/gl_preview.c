@@ -145,8 +145,8 @@ static void a_moving_view_is_near_the_still_one(void **state)
     shape_set_destroy(set);
 }
 
-/* In the background: something at once, and in the end the very picture that one gets by waiting; nothing is left of the
- * coarse one. A nearer view asks for finer voxels and gets those. */
+/* In the background: something at once, and in the end the picture that one gets by waiting, to rounding; nothing is left of
+ * the coarse one. A nearer view asks for finer voxels and gets those. */
 static void what_is_made_meanwhile_is_the_same(void **state)
 {
     (void)state;
@@ -188,7 +188,15 @@ static void what_is_made_meanwhile_is_the_same(void **state)
             must(shape_gl_draw(renderer[i], &view, 0, &error), &error);
             must(shape_gl_read(renderer[i], pictures[i], &error), &error);
         }
-        assert_memory_equal(pictures[0], pictures[1], values * sizeof(float));
+        /* The textures of voxels have other sizes, so places in them are rounded otherwise, and bytes are filtered with 8
+         * bits of a voxel's width: now and then one weight of a ray's is another 256th. (0.02: another picture.) */
+        size_t other = 0;
+        for (size_t k = 0; k < values; k++) {
+            assert_float_equal(pictures[0][k], pictures[1][k], 1e-3);
+            other += pictures[0][k] != pictures[1][k];
+        }
+        print_message("made meanwhile: %zu of %zu values are others\n", other, values);
+        assert_true(other < values / 100);
     }
     for (int i = 0; i < 2; i++) {
         shape_gl_destroy(renderer[i]);

@@ -37,8 +37,7 @@ double view_now_ms(void)
     return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
 }
 
-/* Of all threads together [ms]: unlike the clock on the wall, hardly changed by what else runs on the machine. */
-static double processor_now_ms(void)
+double view_processor_ms(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -95,13 +94,13 @@ static shape_status draw_frame(shape_gl_renderer *renderer, const shape_view *vi
 {
     bench_frame *frame = &run->frames[i];
     shape_gl_costs before = shape_gl_get_costs(renderer);
-    double start = view_now_ms(), used = processor_now_ms();
+    double start = view_now_ms(), used = view_processor_ms();
     shape_status status = shape_gl_draw_moving(renderer, view, error);
     if (status)
         return status;
     shape_gl_finish();
     frame->ms = view_now_ms() - start;
-    frame->processor_ms = processor_now_ms() - used;
+    frame->processor_ms = view_processor_ms() - used;
     if (i == 0)
         run->first_ms = start + frame->ms - run->started;
     status = shape_gl_read(renderer, run->rgba, error);
@@ -144,8 +143,8 @@ static shape_status write_frames(const char *path, const bench_run *run, int cou
     return status;
 }
 
-static void print_report(const view_job *job, const char *method, shape_gl_costs costs, const bench_run *run,
-                         int count, double *times, double *processor)
+static void print_report(const view_job *job, const view_bench *plan, shape_gl_costs costs,
+                         const bench_run *run, int count, double *times, double *processor)
 {
     double slowest = 0, largest_jump = 0, steps = 0, fetches = 0;
     for (int i = 0; i < count; i++) {
@@ -165,13 +164,15 @@ static void print_report(const view_job *job, const char *method, shape_gl_costs
     const double cpu_ms = 1e3 * (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
                           1e-3 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
     json_t *report = json_pack(
-        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:f, s:f, s:I, s:f, s:f, s:I, s:I, "
+        "{s:s, s:[i,i], s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:{s:f,s:f,s:f,s:f}, s:f, s:f, s:I, s:f, "
+        "s:f, s:I, s:I, "
         "s:I, s:I, "
         "s:I, "
         "s:f, s:f, s:I}",
-        "method", method, "size", job->view.width, job->view.height, "frames", count, "load_ms",
+        "method", plan->method, "size", job->view.width, job->view.height, "frames", count, "load_ms",
         job->load_ms + costs.upload_ms, "light_ms", costs.light_ms, "bake_ms", costs.bake_ms,
-        "first_picture_ms", run->first_ms, "frame_ms", "min", times[0], "median", times[count / 2], "p95",
+        "first_picture_ms", run->first_ms, "libraries_ms", plan->libraries_ms, "context_ms", plan->context_ms,
+        "first_frame_ms", run->frames[0].ms, "frame_ms", "min", times[0], "median", times[count / 2], "p95",
         times[p95], "max", slowest, "processor_ms_min", processor[0], "processor_ms_median",
         processor[count / 2], "primitives", (json_int_t)count_primitives(job->volume), "steps_per_pixel",
         steps, "fetches_per_pixel", fetches, "clouds_lit", (json_int_t)costs.lit_clouds, "clouds_baked",
@@ -206,7 +207,7 @@ shape_status view_bench_run(const view_job *job, shape_gl_renderer *renderer, co
     if (!status && plan->frames_file)
         status = write_frames(plan->frames_file, &run, count, error);
     if (!status)
-        print_report(job, plan->method, shape_gl_get_costs(renderer), &run, count, times, processor);
+        print_report(job, plan, shape_gl_get_costs(renderer), &run, count, times, processor);
     free(times);
     free(processor);
     free(run.frames);

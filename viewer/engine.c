@@ -76,6 +76,7 @@ static shape_status create(view_engine *e, const shape_gl_options *usual, const 
     options.lighting = *lighting;
     options.light.opaque = view_things_get(e->things);
     options.background = !e->quick;
+    options.early = true;
     if (e->quick)
         options.bake_voxels = QUICK_VOXELS;
     return shape_gl_create(&options, &e->gl, error);

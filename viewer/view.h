@@ -132,10 +132,16 @@ typedef struct view_bench {
     bool flight;             /* straight on through the target, rather than round it */
     const char *method;      /* its name */
     const char *frames_file; /* a row a frame is written there (CSV); NULL: none */
-    double started;          /* when the program began, by view_now_ms */
+    double started;          /* when the program began to be loaded, by view_now_ms */
+    double libraries_ms,
+        context_ms; /* of what comes before the first picture: loading the program and its libraries, starting
+                                        OpenGL (while the clouds are placed, lit and baked) */
 } view_bench;
 
 double view_now_ms(void);
+/* Of all threads together since the program began to be loaded; unlike the clock on the wall, hardly changed by what else
+ * runs on the machine. */
+double view_processor_ms(void);
 /* Draws job->view's frames, each to its end, and prints their times as JSON (docs/benchmarks.md). *view gets the last one's;
  * the renderer holds its picture. */
 shape_status view_bench_run(const view_job *job, shape_gl_renderer *renderer, const view_bench *plan,

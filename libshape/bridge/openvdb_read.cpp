@@ -359,17 +359,6 @@ shape_status check_header(const char *path, const unsigned char *bytes, size_t s
 
 } // namespace
 
-extern "C" shape_vdb_read_options shape_vdb_read_defaults(void)
-{
-    shape_vdb_read_options options = {nullptr, size_t(4) << 30, false, nullptr, nullptr};
-    return options;
-}
-
-extern "C" bool shape_vdb_is(const void *bytes, size_t size)
-{
-    return size >= 8 && !std::memcmp(bytes, " BDV\0\0\0\0", 8);
-}
-
 extern "C" shape_status shape_vdb_read(const char *path, const shape_vdb_read_options *options,
                                        shape_vdb_contents *contents, shape_error *error)
 {

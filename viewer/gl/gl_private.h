@@ -55,6 +55,8 @@ typedef struct gl_scene {
 enum { GL_RECORD_TEXELS = 36 }; /* SHAPE_RECORD_TEXELS */
 
 shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_error *error);
+/* The noise, where the shaders evaluate it: of all methods but the default one. */
+void gl_scene_load_noise(gl_scene *scene, const shape_noise *noise);
 /* Rewrites the records for an eye (each cloud's frame is taken relative to it, in double precision) and uploads them;
  * clouds out of the view's sight are left out. */
 void gl_scene_place_eye(gl_scene *scene, const shape_volume *volume, const shape_camera *camera);
@@ -83,6 +85,7 @@ typedef struct gl_tiles {
     int list_columns;  /* of their tiles */
     float list_scale;  /* see shaders/view/march_list.glsl */
     int columns, empty_count, one_count, several_count;
+    float *texels; /* of `lists` */
 } gl_tiles;
 
 shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_volume *volume,
@@ -255,6 +258,15 @@ typedef struct gl_grids {
     gl_baked *baked; /* of the default method */
 } gl_grids;
 
+/* --- refine.c, first.c: an order carried out; needs no OpenGL --- */
+
+/* Makes of an order something coarse, of what is wholly missing. */
+void gl_order_first(gl_order *order);
+/* Makes what is wanted; ms gets how long light and density took, where they were. The caller drops the grids. */
+shape_status gl_order_make(const gl_order *order, gl_grids *made, double ms[2], shape_error *error);
+/* Whether what shape_gl_take_first has brought is what a first order asks for; then the caller gets it, with its times. */
+bool gl_first_use(shape_gl_renderer *renderer, const gl_order *order, gl_grids *grids, double ms[2]);
+
 /* --- surface.c, surface_shade.c: opaque things --- */
 
 typedef struct gl_surface {
@@ -295,13 +307,14 @@ typedef struct gl_frame {
     const gl_tiles *tiles;
     const shape_gl_part *part; /* of the view; never of width 0 */
     int sample;
-    bool moving;
+    bool moving, quick; /* quick: of early.c, the first of all pictures */
     float share; /* of what is drawn in the picture that is there already, 1: all; of moving pictures */
 } gl_frame;
 
 /* What the default method has of its own. */
 typedef struct gl_preview {
-    GLuint sky, one, several, fill, sky_picture_program;
+    GLuint sky_picture_program, one, fill, several, sky; /* in the order in which they are compiled */
+    int warm;              /* how many of them the driver has made ready, too (gl_preview_warm) */
     gl_target coarse;      /* a moving view's first pass: every second pixel each way */
     gl_target sky_picture; /* see shaders/view/sky_picture.glsl */
     bool moving;           /* the last picture was a moving view's */
@@ -323,6 +336,7 @@ struct shape_gl_renderer {
     const shape_volume *volume;
     gl_scene scene;
     gl_grids grids, last_grids; /* the last ones are faded out while fade_left frames remain */
+    shape_gl_first *first;      /* what was made before there was a renderer, or NULL */
     gl_refinement *refinement;  /* what is being made on a thread, or NULL */
     gl_grids coming;            /* what it has made, while that is sent to the GPU; NULL where nothing is */
     double coming_ms[2];        /* how long light and baked density of it took */
@@ -331,6 +345,8 @@ struct shape_gl_renderer {
     gl_pool pool;
     int fade_left;
     bool light_changed, refined;
+    bool early, early_drawn; /* the picture that is being drawn, any picture: without shaders (early.c) */
+    bool unsent;             /* the voxels in use are not on the GPU, since the first picture needs none */
     gl_preview preview;
     gl_surface surface;
     gl_air air;
@@ -389,6 +405,8 @@ void gl_set_law(const shape_gl_renderer *renderer, const gl_grids *grids, GLuint
 
 /* Before a picture: makes what it needs, or, in the background, something coarse, with the rest to come. */
 shape_status gl_refine(shape_gl_renderer *renderer, const shape_view *view, shape_error *error);
+/* Sends the voxels in use to the GPU, where that has not been done. */
+shape_status gl_refine_send(shape_gl_renderer *renderer, shape_error *error);
 /* Breaks the thread off, waits for it and throws away what it made. */
 void gl_refine_stop(shape_gl_renderer *renderer);
 
@@ -411,12 +429,25 @@ void gl_air_free(gl_air *air);
 
 /* --- preview.c: the default method --- */
 
-/* defines: of all programs. Makes them anew where they are there; marching: those alone that light comes into. */
-shape_status gl_preview_create(gl_preview *preview, const char *folder, const char *defines, bool marching,
-                               shape_error *error);
+enum { GL_PREVIEW_PROGRAMS = 5 };
+/* How many of them a moving view of the volume needs. */
+int gl_preview_needed(const shape_gl_renderer *renderer);
+/* Compiles those of the first `count` programs that are not compiled yet. */
+shape_status gl_preview_compile(shape_gl_renderer *renderer, int count, shape_error *error);
+/* Draws next to nothing by one more program, since drivers compile the rest of a shader when it is first drawn with. */
+shape_status gl_preview_warm(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
+                             shape_error *error);
+/* marching: those alone that light comes into. */
+void gl_preview_drop_programs(gl_preview *preview, bool marching);
 shape_status gl_preview_resize(gl_preview *preview, int width, int height, shape_error *error);
 void gl_preview_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame);
 void gl_preview_free(gl_preview *preview);
+
+/* --- early.c: the same without shaders --- */
+
+/* Draws a moving view's picture on the CPU, after gl_light_compose and gl_tiles_make for it. No opaque things, no air. */
+shape_status gl_early_draw(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
+                           shape_error *error);
 
 /* --- parts.c: the exact method --- */
 

@@ -92,9 +92,12 @@ static int find_wanted(const gl_order *order, float *wanted)
 }
 
 /* Voxels for each of them: what it wants where all fit into the limit, else what is left when those that want less have
- * theirs, shared evenly. */
+ * theirs, shared evenly. But never so few that next to none lie in the cloud (shape_bake_voxel counts 16 along each axis for
+ * the border), and a first picture is seen by a dozen along each. */
 static size_t share_of_each(const gl_order *order, const float *wanted, int clouds)
 {
+    enum { LEAST = 20 * 20 * 20, LEAST_FIRST = 28 * 28 * 28 };
+    const size_t least = order->first ? LEAST_FIRST : LEAST;
     double all = (double)order->bake_voxels, each = all / (clouds > 0 ? clouds : 1);
     for (int round = 0; round < 4; round++) {
         double taken = 0;
@@ -109,7 +112,7 @@ static size_t share_of_each(const gl_order *order, const float *wanted, int clou
         if (modest < clouds)
             each = fmax(each, (all - taken) / (clouds - modest));
     }
-    return (size_t)each;
+    return each > (double)least ? (size_t)each : least;
 }
 
 /* Takes over what does; of the rest voxels[i] gets how fine it is baked, 0: not at all. Returns how many are baked. */

@@ -51,10 +51,12 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     made->options = *options;
     const char *folder = options->shader_folder;
     static const char whole[] = "view/fullscreen.vert";
+    if (options->method != SHAPE_GL_DEFAULT || folder)
+        made->options.early = false;
     shape_status status = SHAPE_OK;
     if (options->method == SHAPE_GL_DEFAULT)
         status = gl_make_programs(made, error);
-    if (!status)
+    if (!status && !made->options.early)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
         status = gl_program_create(folder, whole, "view/copy.frag", "", &made->copy, error);
@@ -80,6 +82,7 @@ void shape_gl_destroy(shape_gl_renderer *renderer)
     if (!renderer)
         return;
     gl_refine_stop(renderer);
+    shape_gl_first_free(renderer->first);
     gl_update_free(&renderer->update);
     gl_light_drop(renderer->earlier);
     gl_scene_free(&renderer->scene);
@@ -200,6 +203,8 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     shape_status status = prepare_program(renderer, error);
     if (!status)
         status = gl_scene_load(&renderer->scene, volume, error);
+    if (!status && renderer->options.method != SHAPE_GL_DEFAULT)
+        gl_scene_load_noise(&renderer->scene, volume->noise);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
         status = gl_volumes_load(&renderer->scene, volume, error);
     if (!status && !is_paper(renderer))
@@ -210,7 +215,6 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
 
 shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error)
 {
-    char defines[64];
     bool air = gl_has_air(renderer);
     int wanted = 2 + air + 2 * (int)gl_law(renderer), made_for = renderer->made_for;
     if (wanted == made_for)
@@ -218,10 +222,9 @@ shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error)
     renderer->made_for = 0;
     shape_status status = SHAPE_OK;
     if (renderer->options.method == SHAPE_GL_DEFAULT) {
-        snprintf(defines, sizeof defines, "%s", air ? "#define AIR\n" : "");
-        gl_law_define(renderer, defines, sizeof defines);
-        status = gl_preview_create(&renderer->preview, renderer->options.shader_folder, defines,
-                                   made_for && made_for % 2 == wanted % 2, error);
+        gl_preview_drop_programs(&renderer->preview, made_for && made_for % 2 == wanted % 2);
+        if (!renderer->options.early)
+            status = gl_preview_compile(renderer, GL_PREVIEW_PROGRAMS, error);
     } else if (renderer->volume) {
         status = prepare_program(renderer, error);
     }
@@ -264,7 +267,11 @@ static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int 
         return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                "a picture of %dx%d is larger than this GPU draws (%dx%d)", width, height,
                                largest, largest);
+    static const float nothing[4];
     shape_status status = gl_target_make(&renderer->mean, width, height, true, error);
+    /* What is drawn first is blended with it, though it counts nothing; what is painted is not. */
+    for (int i = 0; i < 2 && !status && !renderer->early; i++)
+        glClearBufferfv(GL_COLOR, i, nothing);
     if (!status && renderer->options.method == SHAPE_GL_DEFAULT)
         status = gl_preview_resize(&renderer->preview, width, height, error);
     if (!status)
@@ -300,8 +307,6 @@ void gl_draw_triangle(const shape_gl_renderer *renderer)
 
 void gl_begin_mix(float share)
 {
-    if (share >= 1)
-        return;
     glEnable(GL_BLEND);
     glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
     glBlendColor(0, 0, 0, share);
@@ -309,7 +314,8 @@ void gl_begin_mix(float share)
 
 void gl_begin_mean(int sample)
 {
-    gl_begin_mix(1.0f / (float)(sample + 1));
+    if (sample > 0)
+        gl_begin_mix(1.0f / (float)(sample + 1));
 }
 
 shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
@@ -352,6 +358,24 @@ static shape_status draw_whole(shape_gl_renderer *renderer, const gl_frame *fram
     return SHAPE_OK;
 }
 
+/* Whether moving pictures are still drawn without shaders. */
+static bool is_early(const shape_gl_renderer *r)
+{
+    return r->options.early && !r->options.light.opaque && !gl_has_air(r) && gl_law(r) == SHAPE_GL_LAW_GRID &&
+           r->preview.warm < gl_preview_needed(r);
+}
+
+/* The first picture at once; with each of the next ones a shader is made ready. */
+static shape_status draw_early(shape_gl_renderer *renderer, const gl_grids *grids, const gl_frame *frame,
+                               shape_error *error)
+{
+    shape_status status = SHAPE_OK;
+    if (renderer->early_drawn)
+        status = gl_preview_warm(renderer, grids, frame, error);
+    renderer->early_drawn = true;
+    return status ? status : gl_early_draw(renderer, grids, frame, error);
+}
+
 /* The preview by one set of grids. */
 static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_frame *frame, shape_error *error)
 {
@@ -370,6 +394,12 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
         return status;
     if (renderer->options.method != SHAPE_GL_DEFAULT)
         return draw_whole(renderer, frame, error);
+    if (renderer->early)
+        return draw_early(renderer, grids, frame, error);
+    status = gl_preview_compile(renderer, frame->moving ? gl_preview_needed(renderer) : GL_PREVIEW_PROGRAMS,
+                                error);
+    if (status)
+        return status;
     gl_preview_draw(renderer, grids, frame);
     return SHAPE_OK;
 }
@@ -379,16 +409,19 @@ static shape_status draw(shape_gl_renderer *renderer, const shape_view *view, in
 {
     const shape_gl_part whole = {0, 0, view->width, view->height};
     const shape_gl_part *part = renderer->part.width ? &renderer->part : &whole;
+    renderer->early = moving && is_early(renderer);
     shape_status status = prepare_targets(renderer, part->width, part->height, error);
     if (!moving)
         renderer->fade_left = 0; /* a picture at rest is of the last grids alone */
+    if (!status)
+        status = gl_refine_send(renderer, error);
     if (!status)
         status = gl_refine(renderer, view, error);
     if (status)
         return status;
     shape_camera camera = shape_view_camera(view);
     gl_tiles tiles;
-    gl_frame frame = {view, &camera, &tiles, part, sample, moving, 1};
+    gl_frame frame = {view, &camera, &tiles, part, sample, moving, !renderer->early_drawn, 1};
     gl_scene_place_eye(&renderer->scene, renderer->volume, &camera); /* finds what is in sight */
     status = gl_tiles_make(&tiles, &renderer->scene, renderer->volume, view, part, &camera, error);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
@@ -435,7 +468,7 @@ bool shape_gl_refined(shape_gl_renderer *renderer)
 bool shape_gl_pending(const shape_gl_renderer *renderer)
 {
     return renderer->refinement || renderer->coming.light || renderer->coming.baked ||
-           renderer->fade_left > 0;
+           renderer->fade_left > 0 || is_early(renderer);
 }
 
 void shape_gl_finish(void)
@@ -480,6 +513,9 @@ shape_status shape_gl_read(shape_gl_renderer *renderer, float *rgba, shape_error
 
 void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width, int height)
 {
+    if (!renderer->tonemap && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
+                                                "view/tonemap.frag", "", &renderer->tonemap, NULL))
+        return;
     glViewport(0, 0, width, height);
     glUseProgram(renderer->tonemap);
     gl_bind(renderer->tonemap, "accumulated", 0, GL_TEXTURE_2D, renderer->mean.textures[0]);
@@ -530,6 +566,7 @@ shape_status shape_gl_densities(shape_gl_renderer *renderer, const shape_vec3 *p
         /* A camera that sees everything: the records are wanted, not the view. */
         shape_camera camera = {view.eye, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         camera.right = camera.up = shape_dvec3_make(0, 0, 0);
+        gl_scene_load_noise(&renderer->scene, renderer->volume->noise);
         glUseProgram(renderer->density);
         glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
         glViewport(0, 0, WIDTH, rows);

@@ -5,7 +5,7 @@
 
 #include "gl_private.h"
 
-enum { CELL = 16, FIRST_SIDE = 256, FIRST_DEPTH = 64 };
+enum { CELL = 16, FIRST_SIDE = 144, FIRST_DEPTH = 48 };
 
 static int cells_of(int texels)
 {
@@ -106,17 +106,27 @@ static shape_status resize(gl_pool *pool, const int size[3], shape_error *error)
     return SHAPE_OK;
 }
 
-/* Makes room for a box. Sides are powers of two: Mesa compiles shaders anew where that changes. */
+/* At least so many texels, as whole cells. Never a power of two: Mesa compiles shaders anew where that changes. */
+static int side_of(int texels)
+{
+    int side = cells_of(texels) * CELL;
+    return side & (side - 1) ? side : side + CELL;
+}
+
+/* Makes room for a box, and not much more: Mesa fills a new texture with zeros, and a picture waits for that. */
 static shape_status grow(gl_pool *pool, const int needed[3], int limit, shape_error *error)
 {
     int size[3] = {FIRST_SIDE, FIRST_SIDE, FIRST_DEPTH};
     for (int axis = 0; axis < 3; axis++) {
         size[axis] = pool->size[axis] > size[axis] ? pool->size[axis] : size[axis];
-        while (size[axis] < needed[axis])
-            size[axis] *= 2;
+        if (size[axis] < needed[axis])
+            size[axis] = side_of(needed[axis]);
     }
-    if (!memcmp(size, pool->size, sizeof size)) /* it would fit, but there is no place left */
-        size[size[2] < limit / 2 ? 2 : size[1] < size[0] ? 1 : 0] *= 2;
+    if (!memcmp(size, pool->size, sizeof size)) { /* it would fit, but there is no place left */
+        const int axis = size[2] < limit / 2 ? 2 : size[1] < size[0] ? 1 : 0;
+        const int more = needed[axis] > size[axis] / 2 ? needed[axis] : size[axis] / 2;
+        size[axis] = side_of(size[axis] + more);
+    }
     if (size[0] > limit || size[1] > limit || size[2] > limit)
         return shape_error_set(error, SHAPE_ERROR_LIMIT,
                                "the grids of %zu clouds do not fit into this GPU's 3-D textures (%d a side)",

@@ -29,9 +29,8 @@ struct gl_refinement {
     bool old_light;    /* the sun has moved since: what it makes of light is of no use */
     gl_light *earlier; /* the same; NULL: none */
     atomic_bool done, stop;
-    gl_light *new_light;
-    gl_baked *new_baked;
-    double light_ms, bake_ms;
+    gl_grids made;
+    double ms[2]; /* that its light and density took */
     shape_status status;
     shape_error error;
 };
@@ -43,18 +42,17 @@ static double now_ms(void)
     return 1e3 * (double)time.tv_sec + 1e-6 * (double)time.tv_nsec;
 }
 
-static shape_status make(const gl_order *order, gl_light **light, double *light_ms, gl_baked **baked,
-                         double *bake_ms, shape_error *error)
+shape_status gl_order_make(const gl_order *order, gl_grids *made, double ms[2], shape_error *error)
 {
     double start = now_ms();
-    shape_status status = order->want_light ? gl_light_make(order, light, error) : SHAPE_OK;
+    shape_status status = order->want_light ? gl_light_make(order, &made->light, error) : SHAPE_OK;
     double middle = now_ms();
     if (!status && order->want_baked)
-        status = gl_baked_make(order, baked, error);
+        status = gl_baked_make(order, &made->baked, error);
     if (order->want_light)
-        *light_ms = middle - start;
+        ms[0] = middle - start;
     if (order->want_baked)
-        *bake_ms = now_ms() - middle;
+        ms[1] = now_ms() - middle;
     return status;
 }
 
@@ -62,8 +60,7 @@ static void *work(void *data)
 {
     gl_refinement *job = data;
     (void)setpriority(PRIO_PROCESS, 0, NICE); /* of this thread, and of those that OpenMP makes for it */
-    job->status =
-        make(&job->order, &job->new_light, &job->light_ms, &job->new_baked, &job->bake_ms, &job->error);
+    job->status = gl_order_make(&job->order, &job->made, job->ms, &job->error);
     atomic_store(&job->done, true);
     return NULL;
 }
@@ -80,8 +77,7 @@ static void end_job(shape_gl_renderer *r)
     if (!job)
         return;
     pthread_join(job->thread, NULL);
-    gl_light_drop(job->new_light);
-    gl_baked_drop(job->new_baked);
+    gl_grids_drop(&job->made);
     gl_grids_drop(&job->from);
     gl_light_drop(job->earlier);
     free(job);
@@ -199,7 +195,7 @@ static shape_status bring(shape_gl_renderer *r, int texture_limit, shape_error *
     bool all = true;
     shape_status status =
         coming->baked ? send(r, coming->baked, SLICE, texture_limit, &all, error) : SHAPE_OK;
-    if (status || !all || r->fade_left > 0)
+    if (status || !all || r->fade_left > 0 || r->early)
         return status;
     status = join(coming, &r->grids, texture_limit, error);
     if (status)
@@ -230,13 +226,12 @@ static shape_status collect(shape_gl_renderer *r, shape_error *error)
         *error = job->error;
     } else {
         if (!job->old_light) {
-            r->coming.light = job->new_light;
-            job->new_light = NULL;
+            r->coming.light = job->made.light;
+            job->made.light = NULL;
         }
-        r->coming.baked = job->new_baked;
-        job->new_baked = NULL;
-        r->coming_ms[0] = job->light_ms;
-        r->coming_ms[1] = job->bake_ms;
+        r->coming.baked = job->made.baked;
+        job->made.baked = NULL;
+        memcpy(r->coming_ms, job->ms, sizeof r->coming_ms);
     }
     end_job(r);
     return status;
@@ -244,24 +239,41 @@ static shape_status collect(shape_gl_renderer *r, shape_error *error)
 
 static shape_status make_now(shape_gl_renderer *r, const gl_order *order, shape_error *error)
 {
-    gl_light *light = NULL;
-    gl_baked *baked = NULL;
-    shape_status status = make(order, &light, &r->costs.light_ms, &baked, &r->costs.bake_ms, error);
+    gl_grids made = {0};
+    double ms[2] = {r->costs.light_ms, r->costs.bake_ms};
+    shape_status status = SHAPE_OK;
+    if (!order->first || !gl_first_use(r, order, &made, ms))
+        status = gl_order_make(order, &made, ms, error);
     if (status) {
-        gl_light_drop(light);
-        gl_baked_drop(baked);
+        gl_grids_drop(&made);
         return status;
     }
-    if (light)
-        take_light(r, light);
-    if (baked) {
+    r->costs.light_ms = ms[0];
+    r->costs.bake_ms = ms[1];
+    if (made.light)
+        take_light(r, made.light);
+    if (made.baked) {
         bool all;
         if (!r->options.background) /* places do not depend on what was there before */
             gl_pool_free(&r->pool);
-        take_baked(r, baked);
-        status = send(r, baked, SIZE_MAX, order->texture_limit, &all, error);
+        take_baked(r, made.baked);
+        r->unsent = r->early && !r->early_drawn; /* the very first picture needs none */
+        if (!r->unsent)
+            status = send(r, made.baked, SIZE_MAX, order->texture_limit, &all, error);
     }
     return status;
+}
+
+shape_status gl_refine_send(shape_gl_renderer *r, shape_error *error)
+{
+    GLint largest = 256;
+    bool all;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+    const bool unsent = r->unsent;
+    r->unsent = false;
+    if (!unsent || !r->grids.baked)
+        return SHAPE_OK;
+    return send(r, r->grids.baked, SIZE_MAX, largest, &all, error);
 }
 
 static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
@@ -282,13 +294,13 @@ static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
 }
 
 /* Cells along the longest side of each cloud's first scattered light: the fewer the more clouds are to be lit. */
-static int first_scattering(const shape_gl_renderer *r, const gl_order *order)
+static int first_scattering(const gl_order *order)
 {
     int clouds = 0, cells = FIRST_SCATTERING;
     shape_camera camera = shape_view_camera(&order->view);
-    for (size_t i = 0; i < r->volume->cloud_count; i++)
+    for (size_t i = 0; i < order->volume->cloud_count; i++)
         clouds += !(order->light_from && order->light_from->lit[i]) &&
-                  gl_in_sight(&r->volume->clouds[i], &camera, GL_MARGIN);
+                  gl_in_sight(&order->volume->clouds[i], &camera, GL_MARGIN);
     while (cells > FEW_SCATTERING && clouds * cells * cells * cells > ALL_SCATTERING)
         cells--;
     return cells;
@@ -305,16 +317,21 @@ static shape_status extend_last(shape_gl_renderer *r, int texture_limit, shape_e
     return status;
 }
 
+void gl_order_first(gl_order *order)
+{
+    order->first = order->missing_only = true;
+    if (order->light_options.resolution > FIRST_LIGHT)
+        order->light_options.resolution = FIRST_LIGHT;
+    order->scattering_cells = first_scattering(order);
+    if (order->bake_voxels > FIRST_VOXELS)
+        order->bake_voxels = FIRST_VOXELS;
+}
+
 /* Something coarse, now, of what is wholly missing. */
 static shape_status make_first(shape_gl_renderer *r, const gl_order *order, shape_error *error)
 {
     gl_order first = *order;
-    first.first = first.missing_only = true;
-    if (first.light_options.resolution > FIRST_LIGHT)
-        first.light_options.resolution = FIRST_LIGHT;
-    first.scattering_cells = first_scattering(r, order);
-    if (first.bake_voxels > FIRST_VOXELS)
-        first.bake_voxels = FIRST_VOXELS;
+    gl_order_first(&first);
     if (!order->light_from)
         r->fade_left = 0; /* all light is new, as the sun is */
     shape_status status = make_now(r, &first, error);

@@ -60,6 +60,9 @@ typedef struct shape_gl_options {
     bool no_background; /* the sky lights the clouds and is not seen behind them */
     bool
         background; /* default method: draw at once by something coarse, and make the rest on a thread meanwhile */
+    bool
+        early; /* default method: moving views of clouds alone are drawn on the CPU until the shaders are compiled, which
+                   happens bit by bit meanwhile; no matter with a shader_folder, opaque things or air */
     /* Asked while something is made that a picture waits for; where it is true, drawing returns SHAPE_ERROR_STOPPED, and may be
      * tried again. What is made meanwhile, on a thread, ends with the next load or the renderer. Default none. */
     shape_stop stop;
@@ -86,6 +89,19 @@ typedef struct shape_gl_costs {
 shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer **renderer,
                              shape_error *error);
 void shape_gl_destroy(shape_gl_renderer *renderer); /* NULL is allowed */
+
+/* --- first.c: what the first picture needs of the processor, made while a context is being opened --- */
+
+typedef struct shape_gl_first shape_gl_first;
+
+/* Light and density for a renderer's first picture, for options with `background` set; else *made is NULL. Needs no OpenGL,
+ * and may run on any thread. The volume must live as long as what is made. */
+shape_status shape_gl_first_make(const shape_gl_options *options, const shape_volume *volume,
+                                 const shape_light *light, const shape_view *view, shape_gl_first **made,
+                                 shape_error *error);
+void shape_gl_first_free(shape_gl_first *first); /* NULL is allowed */
+/* The renderer takes it over. It is used where the first picture is of that volume, light and view, and no matter else. */
+void shape_gl_take_first(shape_gl_renderer *renderer, shape_gl_first *first);
 
 /* Uploads a volume; it must live until the next load has returned, or the end. With options.background the default method
  * compares it with the one before, cloud by cloud: grids of clouds that have not changed stay, and where few primitives have,

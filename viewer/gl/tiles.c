@@ -107,7 +107,7 @@ shape_status gl_tiles_make(gl_tiles *tiles, const gl_scene *scene, const shape_v
     }
     free(covers);
     free(next);
-    free(texels);
+    tiles->texels = texels;
     return status;
 }
 
@@ -116,4 +116,5 @@ void gl_tiles_free(gl_tiles *tiles)
     glDeleteTextures(1, &tiles->lists);
     glDeleteTextures(1, &tiles->order);
     glDeleteTextures(1, &tiles->primitives);
+    free(tiles->texels);
 }

@@ -42,8 +42,10 @@ GLuint gl_float_texture(const float *data, size_t texels, shape_status *status, 
 }
 
 /* A volume of voxels alone has no noise; its shaders are given a cell of nothing, which they never ask for. */
-static void upload_noise(gl_scene *scene, const shape_noise *noise)
+void gl_scene_load_noise(gl_scene *scene, const shape_noise *noise)
 {
+    if (scene->noise_cells)
+        return;
     static const uint16_t nothing[8];
     const uint16_t *cells = noise ? noise->cells : nothing;
     const int side = noise ? SHAPE_NOISE_SIZE : 1;
@@ -200,7 +202,6 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
         status = upload_trees(scene, volume, error);
     if (status)
         return status;
-    upload_noise(scene, volume->noise);
     size_t *roots = calloc(volume->tree_count + 1, sizeof *roots);
     if (!roots)
         return shape_error_memory(error);
