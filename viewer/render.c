@@ -15,7 +15,7 @@
 #include "reference.h"
 #include "shot.h"
 
-enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50 };
+enum { TARGETS = 3, REST_MS = 120, BUDGET_MS = 50, PATIENCE_MS = 150 };
 
 struct view_renderer {
     view_render_start start;
@@ -27,6 +27,8 @@ struct view_renderer {
     bool broken_off;                    /* light and density that a picture waits for */
     const view_shared *sets[2];         /* of the wish that is being drawn, only to be compared */
     atomic_bool hurry;                  /* what is being made is not wanted any more */
+    atomic_bool newer;                  /* another set waits */
+    double picked;                      /* when the present wish was taken [ms] */
     view_request wish;
     view_shown wished;
     view_shot wish_shot;
@@ -573,6 +575,8 @@ static void *render_thread(void *context)
             r->sets[1] = shown.other;
             r->broken_off = false;
             atomic_store(&r->hurry, r->stop);
+            atomic_store(&r->newer, false);
+            r->picked = now_ms();
         }
         if (shoot) {
             memcpy(wanted, &r->wish_shot, sizeof *wanted);
@@ -616,9 +620,12 @@ static void *render_thread(void *context)
     return NULL;
 }
 
+/* Another set breaks off what has taken long already: else an option that is dragged, of which each moment makes a set, would
+ * never show anything. */
 static bool hurries(void *context)
 {
-    return atomic_load(&((view_renderer *)context)->hurry);
+    view_renderer *r = context;
+    return atomic_load(&r->hurry) || (atomic_load(&r->newer) && now_ms() - r->picked > PATIENCE_MS);
 }
 
 view_renderer *view_renderer_start(const view_render_start *start, shape_error *error)
@@ -676,8 +683,7 @@ void view_renderer_ask(view_renderer *r, const view_request *request, const view
     r->fresh = true;
     r->picture.done = false;
     if (shown->set != r->sets[0] || shown->other != r->sets[1])
-        atomic_store(&r->hurry,
-                     true); /* other wishes wait: else a slider that is dragged would never show anything */
+        atomic_store(&r->newer, true);
     pthread_cond_signal(&r->asked);
     pthread_mutex_unlock(&r->mutex);
 }

@@ -62,7 +62,8 @@ static void trim(span *a, span *b, size_t size)
     while (last < both - first &&
            !memcmp(item(a, size, a->count - 1 - last), item(b, size, b->count - 1 - last), size))
         last++;
-    a->items += first * size, b->items += first * size;
+    if (first) /* an empty list has no items to point to */
+        a->items += first * size, b->items += first * size;
     a->count -= first + last, b->count -= first + last;
 }
 
