@@ -34,7 +34,7 @@ typedef enum chart_change {
 typedef struct chart_setting {
     chart_method method;
     shape_rule rule;
-    int steps; /* along the longest side of all clouds */
+    int steps;               /* along the longest side of all clouds */
     shape_march_light light; /* of CHART_GL and CHART_GL_EXACT: single, powder, octaves or grid */
     shape_march_shadow shadow;
     shape_march_jitter jitter;
