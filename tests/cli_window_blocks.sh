@@ -21,23 +21,6 @@ clock=1500
 
 is_open() { xdotool getwindowname "$window" | grep -q '^big.neph'; }
 has_bar() { import -window "$window" bar.png && [ "$(convert bar.png -crop 90x10+470+307 -format '%[fx:mean<0.4]' info:)" = 1 ]; }
-# press X Y: a click, no faster than a hand, once the mouse has been seen there
-press()
-{
-    at "$1" "$2"
-    sleep 0.3
-    xdotool mousedown 1
-    sleep 0.2
-    xdotool mouseup 1
-    sleep 0.3
-}
-# fold Y...: clicks on the headings of the panel's sections that are open, from the first on
-fold()
-{
-    for y; do
-        press 60 "$y"
-    done
-}
 # type_at X Y TEXT: into a field of the panel, in the place of what it holds
 type_at()
 {
