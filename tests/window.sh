@@ -77,7 +77,8 @@ quit()
 {
     # The window is gone before the key is let go, which xdotool takes amiss; a key that stays down would close the next one.
     key Escape 2>/dev/null || true
-    xdotool keyup Escape
+    # With its last window a screen begins anew, and answers nobody for a moment.
+    xdotool keyup Escape 2>/dev/null || { sleep 1; xdotool keyup Escape; }
     status=0
     wait "$viewer" || status=$?
     viewer=
