@@ -248,6 +248,7 @@ static bool is_lost(const window_state *w)
 static void run(window_state *w)
 {
     w->last = glfwGetTime();
+    bool pictured = false;
     for (int left = 3; !glfwWindowShouldClose(w->window) && !is_lost(w);) {
         /* ImGui wants a second frame and a third after an event; then there is nothing to draw until the next. */
         if (left > 0 || w->playing)
@@ -279,7 +280,8 @@ static void run(window_state *w)
         if (!view_panel_is_busy() && !w->dragging && !w->looking && !w->splitting && !w->playing)
             view_history_keep(w->history, &w->state);
         window_pulse_step(&w->pulse, "keep for undo");
-        window_pulse_end(&w->pulse);
+        window_pulse_end(&w->pulse, !pictured && w->picture.texture);
+        pictured = w->picture.texture != 0;
     }
 }
 

@@ -115,7 +115,7 @@ static int wait_for_files(window_state *w)
         shown = true;
         if (draw_bar(w) || glfwWindowShouldClose(w->window))
             leave(w);
-        window_pulse_end(&w->pulse);
+        window_pulse_end(&w->pulse, false);
     }
     w->undo = w->redo = w->home = w->shoot = w->copy = w->save = w->escape = false;
     return failed ? first.code : 0;
