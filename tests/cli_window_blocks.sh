@@ -9,11 +9,11 @@ test=cli_window_blocks
 # shellcheck source=tests/window.sh
 . "$source/tests/window.sh"
 
-# At rest a frame takes 5 ms. Promised are 100 ms; the time in which other programs had the processor does not count, since
-# tests run side by side. A thread that holds a lock may still have been made to wait for a processor, so of three tries one
-# must keep the promise: what blocks does so in each. On the clock it may be 1.5 s, which nothing that reads, makes or
-# writes what follows would keep on a single processor.
-own=100
+# Promised are 100 ms on a machine that has nothing else to do; the time in which other programs had the processor does not count,
+# since tests run side by side. Contexts of OpenGL share locks, though, and the thread that holds one waits for a processor, too:
+# so that is allowed as many times over as programs want each processor, six times at most, and of three tries one must keep
+# it: what blocks does so in each. On the clock it may be 1.5 s.
+own=$(awk -v n="$(nproc)" '{ l = $1 / n; print int(100 * (l < 1 ? 1 : l > 6 ? 6 : l)) }' /proc/loadavg)
 clock=1500
 
 "$bin/neph-gauss" -q --count 1000000 --sigma 380,170,370 --no-prune --no-hollow -o big.neph
@@ -21,23 +21,6 @@ clock=1500
 
 is_open() { xdotool getwindowname "$window" | grep -q '^big.neph'; }
 has_bar() { import -window "$window" bar.png && [ "$(convert bar.png -crop 90x10+470+307 -format '%[fx:mean<0.4]' info:)" = 1 ]; }
-# press X Y: a click, no faster than a hand, once the mouse has been seen there
-press()
-{
-    at "$1" "$2"
-    sleep 0.3
-    xdotool mousedown 1
-    sleep 0.2
-    xdotool mouseup 1
-    sleep 0.3
-}
-# fold Y...: clicks on the headings of the panel's sections that are open, from the first on
-fold()
-{
-    for y; do
-        press 60 "$y"
-    done
-}
 # type_at X Y TEXT: into a field of the panel, in the place of what it holds
 type_at()
 {

@@ -1,5 +1,6 @@
 # For tests of neph-view's window: a screen of its own (Xvfb), and what a person does and sees. Sourced with $bin, $source
-# and $test, the test's name, set; leaves the shell in a folder of its own. KEEP=folder keeps the pictures.
+# and $test, the test's name, set; leaves the shell in a folder of its own. KEEP=folder keeps the
+# pictures there, in a folder of the test's name.
 temporary=$(mktemp -d)
 screen=
 viewer=
@@ -9,7 +10,7 @@ finish()
     trap - EXIT
     [ -z "$viewer" ] || kill "$viewer" 2>/dev/null || true
     [ -z "$screen" ] || kill "$screen" 2>/dev/null || true
-    [ -z "${KEEP:-}" ] || cp "$temporary"/*.png "$KEEP" 2>/dev/null || true
+    [ -z "${KEEP:-}" ] || { rm -f ?.part.png && mkdir -p "$KEEP/$test" && cp "$temporary"/*.png "$KEEP/$test"; } 2>/dev/null || true
     rm -r "$temporary"
     exit "$status"
 }
@@ -76,7 +77,8 @@ quit()
 {
     # The window is gone before the key is let go, which xdotool takes amiss; a key that stays down would close the next one.
     key Escape 2>/dev/null || true
-    xdotool keyup Escape
+    # With its last window a screen begins anew, and answers nobody for a moment.
+    xdotool keyup Escape 2>/dev/null || { sleep 1; xdotool keyup Escape; }
     status=0
     wait "$viewer" || status=$?
     viewer=
@@ -108,6 +110,23 @@ like() { until_true 40 is_like "$@" || fail "the ${1#*+} part of $2 should look 
 unlike() { until_true 40 is_unlike "$@" || fail "$2 should not look like $3: $(distance "$1" "$2" "$3")"; }
 key() { xdotool key --window "$window" "$@"; }
 at() { xdotool mousemove --window "$window" "$@"; }
+# press X Y: a click, no faster than a hand, once the mouse has been seen there
+press()
+{
+    at "$1" "$2"
+    sleep 0.3
+    xdotool mousedown 1
+    sleep 0.2
+    xdotool mouseup 1
+    sleep 0.3
+}
+# fold Y...: clicks on the headings of the panel's sections that are open, from the first on
+fold()
+{
+    for y; do
+        press 60 "$y"
+    done
+}
 # drag FROM-X FROM-Y TO-X TO-Y: no faster than a hand
 drag()
 {

@@ -68,12 +68,6 @@ static void begin_state(window_state *w)
     memcpy(&w->asked, s, sizeof *s);
 }
 
-void window_say(window_state *w, const char *text)
-{
-    snprintf(w->said, sizeof w->said, "%s", text);
-    w->said_until = glfwGetTime() + 4;
-}
-
 static void obey(window_state *w, const view_panel_wish *wish)
 {
     if (w->undo || wish->undo || w->redo || wish->redo)
@@ -185,14 +179,6 @@ static void show_title(window_state *w)
     memcpy(w->title, title, sizeof title);
 }
 
-void window_clear(int width, int height)
-{
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glViewport(0, 0, width, height);
-    glClearColor(0.3f, 0.4f, 0.55f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-}
-
 static void draw(window_state *w)
 {
     int width, height;
@@ -262,6 +248,7 @@ static bool is_lost(const window_state *w)
 static void run(window_state *w)
 {
     w->last = glfwGetTime();
+    bool pictured = false;
     for (int left = 3; !glfwWindowShouldClose(w->window) && !is_lost(w);) {
         /* ImGui wants a second frame and a third after an event; then there is nothing to draw until the next. */
         if (left > 0 || w->playing)
@@ -293,7 +280,8 @@ static void run(window_state *w)
         if (!view_panel_is_busy() && !w->dragging && !w->looking && !w->splitting && !w->playing)
             view_history_keep(w->history, &w->state);
         window_pulse_step(&w->pulse, "keep for undo");
-        window_pulse_end(&w->pulse);
+        window_pulse_end(&w->pulse, !pictured && w->picture.texture);
+        pictured = w->picture.texture != 0;
     }
 }
 
@@ -421,7 +409,7 @@ static shape_status start_drawing(window_state *w, shape_error *error)
     return w->renderer ? SHAPE_OK : error->status;
 }
 
-void window_close(window_state *w)
+static void end_drawing(window_state *w)
 {
     window_stop_comparing(w);
     view_renderer_stop(w->renderer);
@@ -444,7 +432,12 @@ static shape_status begin(window_state *w, shape_error *error)
     view_job *job = w->job;
     shape_dvec3 min = {-1, -1, -1}, max = {1, 1, 1};
     int width = job->view.width, height = job->view.height;
-    window_read_files(w);
+    int mistaken = window_read_files(w);
+    if (mistaken) {
+        end_drawing(w);
+        glfwTerminate();
+        exit(mistaken);
+    }
     if (width != job->view.width || height != job->view.height)
         glfwSetWindowSize(w->window, job->view.width, job->view.height);
     shape_set_bounds(job->set, &min, &max);
@@ -480,7 +473,7 @@ static shape_status show(window_state *w, bool *lost, shape_error *error)
         glfwPollEvents();
     }
     int size[2] = {w->asked_size[0], w->asked_size[1]};
-    window_close(w);
+    end_drawing(w);
     memcpy(w->asked_size, size, sizeof size);
     return status;
 }

@@ -101,7 +101,7 @@ static void leave(const window_state *w)
     _exit(cli_save_wanted() ? CLI_FAILED : CLI_DONE);
 }
 
-static void wait_for_files(window_state *w)
+static int wait_for_files(window_state *w)
 {
     bool failed, shown = false;
     double start = glfwGetTime();
@@ -115,17 +115,13 @@ static void wait_for_files(window_state *w)
         shown = true;
         if (draw_bar(w) || glfwWindowShouldClose(w->window))
             leave(w);
-        window_pulse_end(&w->pulse);
+        window_pulse_end(&w->pulse, false);
     }
     w->undo = w->redo = w->home = w->shoot = w->copy = w->save = w->escape = false;
-    if (!failed)
-        return;
-    window_close(w);
-    glfwTerminate();
-    exit(first.code);
+    return failed ? first.code : 0;
 }
 
-void window_read_files(window_state *w)
+int window_read_files(window_state *w)
 {
     pthread_t thread;
     first.calls = w->calls;
@@ -134,9 +130,12 @@ void window_read_files(window_state *w)
     if (pthread_create(&thread, NULL, read_thread, NULL)) {
         cli_before_end(NULL);
         w->calls->read(w->calls->context); /* without a thread it is only not seen */
-        return;
+        return 0;
     }
-    wait_for_files(w);
-    pthread_join(thread, NULL);
-    cli_before_end(NULL);
+    int code = wait_for_files(w);
+    if (!code) { /* else it waits for the end */
+        pthread_join(thread, NULL);
+        cli_before_end(NULL);
+    }
+    return code;
 }

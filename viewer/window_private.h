@@ -54,9 +54,9 @@ typedef struct window_state {
 
 /* --- window_begin.c: the first files --- */
 
-/* Has them read by w->calls, and shows the window with a bar where that takes long. Ends the program where they have
- * mistakes, or where the window is closed before they have been read. */
-void window_read_files(window_state *w);
+/* Has them read by w->calls, and shows the window with a bar where that takes long. Returns the exit code where they have
+ * mistakes, which have been said, or 0. Ends the program where the window is closed before they have been read. */
+int window_read_files(window_state *w);
 
 /* --- window_scene.c: a scene that is read again --- */
 
@@ -116,12 +116,10 @@ void window_compare(window_state *w);
 void window_describe_difference(const window_state *w, char *text, size_t room);
 void window_stop_comparing(window_state *w);
 
-/* --- window.c --- */
+/* --- window_shared.c --- */
 
 /* Clears what is shown, of so many pixels. */
 void window_clear(int width, int height);
-/* Ends what is drawn with. */
-void window_close(window_state *w);
 /* Shows a line for a moment. */
 void window_say(window_state *w, const char *text);
 

@@ -1,4 +1,5 @@
-/* The longest time between two looks at the events. The first frames are left out: the driver compiles its shaders in them. */
+/* The longest time between two looks at the events. The first frames are left out, and the first with a picture:
+ * the driver compiles its shaders in them. */
 #include "window_pulse.h"
 
 #include <fcntl.h>
@@ -68,13 +69,13 @@ void window_pulse_waited(window_pulse *pulse)
     pulse->last = is;
 }
 
-void window_pulse_end(window_pulse *pulse)
+void window_pulse_end(window_pulse *pulse, bool compiles)
 {
     double ms = pulse->last.clock - pulse->begun.clock - pulse->waited.clock;
     double own = ms - (pulse->last.kept - pulse->begun.kept - pulse->waited.kept);
     if (pulse->waited.clock > pulse->screen)
         pulse->screen = pulse->waited.clock;
-    if (++pulse->frames <= FIRST_FRAMES)
+    if (++pulse->frames <= FIRST_FRAMES || compiles)
         return;
     if (ms > pulse->longest) {
         pulse->longest = ms;

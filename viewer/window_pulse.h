@@ -3,6 +3,7 @@
 #ifndef NEPHELE_WINDOW_PULSE_H
 #define NEPHELE_WINDOW_PULSE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* A moment: the clock, and how long the thread has been kept from a processor by others so far. */
@@ -32,8 +33,9 @@ void window_pulse_begin(window_pulse *pulse);
 void window_pulse_step(window_pulse *pulse, const char *name);
 /* The wait for the screen is over, which began at the last step; it does not count. */
 void window_pulse_waited(window_pulse *pulse);
-/* The frame is done; the next one looks at the events. */
-void window_pulse_end(window_pulse *pulse);
+/* The frame is done; the next one looks at the events. compiles: the driver does for the first time what it has to compile for,
+ * so that the frame does not count, like the very first ones. */
+void window_pulse_end(window_pulse *pulse, bool compiles);
 /* Says the longest on standard error; nothing where there was no frame. */
 void window_pulse_say(const window_pulse *pulse);
 
