@@ -60,23 +60,6 @@ static float find_cap(const shape_medium *medium, float kept)
     return high;
 }
 
-seen_cell seen_look(const seen_grid *s, const int at[3])
-{
-    const double(*m)[4] = s->cloud->frame.m;
-    const shape_vec3 low = s->grid->box.min;
-    seen_cell c;
-    c.v = shape_vec3_make(low.x + s->edge.x * ((float)at[0] + 0.5f) - s->eye.x,
-                          low.y + s->edge.y * ((float)at[1] + 0.5f) - s->eye.y,
-                          low.z + s->edge.z * ((float)at[2] + 0.5f) - s->eye.z);
-    double x = (double)c.v.x, y = (double)c.v.y, z = (double)c.v.z;
-    c.world = shape_vec3_make((float)(m[0][0] * x + m[0][1] * y + m[0][2] * z),
-                              (float)(m[1][0] * x + m[1][1] * y + m[1][2] * z),
-                              (float)(m[2][0] * x + m[2][1] * y + m[2][2] * z));
-    c.away = shape_vec3_length(c.world);
-    c.world = shape_vec3_scale(c.world, 1 / fmaxf(c.away, 1e-20f));
-    return c;
-}
-
 static seen_grid make_grid(const shape_lightgrid *grid, const shape_volume_cloud *cloud, const shape_sky *sky,
                            shape_dvec3 eye)
 {
