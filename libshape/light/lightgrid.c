@@ -247,6 +247,15 @@ static void store(const ordinates_problem *p, size_t cells, shape_lightgrid *gri
 {
     for (size_t i = 0; i < cells; i++) {
         const float *m = p->moments + i * ORDINATES_CELL;
+        float *out = grid->fluxes + i * SHAPE_LIGHTGRID_FLUXES;
+        out[0] = p->extinction[i];
+        for (int axis = 0; axis < 3; axis++) {
+            out[1 + axis] = m[(1 + axis) * ORDINATES_LANES + 1];
+            out[4 + axis] = m[(1 + axis) * ORDINATES_LANES + 2];
+        }
+    }
+    for (size_t i = 0; i < cells; i++) {
+        const float *m = p->moments + i * ORDINATES_CELL;
         float *out = grid->cells + i * SHAPE_LIGHTGRID_VALUES;
         out[1] = m[0], out[2] = m[1], out[3] = m[2];
         out[4] = m[ORDINATES_LANES], out[5] = m[2 * ORDINATES_LANES], out[6] = m[3 * ORDINATES_LANES];
@@ -295,7 +304,12 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
     float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments), *shares = NULL;
-    shape_status status = extinction && beam && moments ? SHAPE_OK : shape_error_memory(error);
+    float above[ORDINATES_DIRECTIONS];
+    const shape_sky sky = shape_sky_make(light);
+    grid->fluxes = malloc(cells * SHAPE_LIGHTGRID_FLUXES * sizeof *grid->fluxes);
+    shape_status status =
+        extinction && beam && moments && grid->fluxes ? SHAPE_OK : shape_error_memory(error);
+    ordinates_sky_shares(&sky, cloud, above);
     if (!status && channel >= 0 && shape_cloud_is_coloured(cloud)) {
         grid->albedos = malloc(cells * sizeof *grid->albedos);
         shares = malloc(cells * sizeof *shares);
@@ -321,6 +335,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
                                .g = rest,
                                .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
                                .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
+                               .above = above,
                                .moments = moments,
                                .stop = options->stop,
                                .visits = &grid->visits};
@@ -461,5 +476,6 @@ void shape_lightgrid_free(shape_lightgrid *grid)
     free(grid->cells);
     free(grid->albedos);
     free(grid->densities);
+    free(grid->fluxes);
     memset(grid, 0, sizeof *grid);
 }

@@ -179,13 +179,16 @@ static shape_status light_channels(shape_marcher *m, size_t i, shape_dvec3 eye, 
         float *seen = calloc(cells, 4 * sizeof *seen);
         if (!seen)
             return shape_error_memory(error);
-        shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, m->upper, m->lower, eye, seen);
+        status = shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, &m->sky, m->upper, m->lower, eye,
+                                      seen, error);
         if (!cloud->seen)
             cloud->seen = seen;
         for (size_t k = 0; k < cells; k++)
             cloud->seen[4 * k + (size_t)c] = seen[4 * k + (size_t)c];
         if (cloud->seen != seen)
             free(seen);
+        if (status)
+            return status;
     }
     return SHAPE_OK;
 }
@@ -212,8 +215,8 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
     cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 4 * sizeof *cloud->seen);
     if (!cloud->seen)
         return shape_error_memory(error);
-    shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, m->upper, m->lower, eye, cloud->seen);
-    return SHAPE_OK;
+    return shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, &m->sky, m->upper, m->lower, eye,
+                                cloud->seen, error);
 }
 
 static shape_status make_blue(shape_marcher *m, shape_error *error)

@@ -9,7 +9,7 @@
 
 #include "base/stop.h"
 
-enum { OCTANTS = 8, PER_OCTANT = 3 };
+enum { OCTANTS = ORDINATES_OCTANTS, PER_OCTANT = ORDINATES_PER_OCTANT };
 
 static const float low = 0.3500212f, high = 0.8688903f;
 
@@ -36,14 +36,21 @@ typedef struct direction {
     float sun_factor; /* radiance of the sun's first collisions there, for an irradiance of 1 */
 } direction;
 
+void ordinates_direction(int number, float omega[3])
+{
+    int octant = number / PER_OCTANT, which = number % PER_OCTANT;
+    for (int axis = 0; axis < 3; axis++)
+        omega[axis] = (axis == which ? high : low) * (octant >> axis & 1 ? 1.0f : -1.0f);
+}
+
 static direction make_direction(const ordinates_problem *p, int octant, int which)
 {
+    const int number = octant * PER_OCTANT + which;
     direction d;
-    for (int axis = 0; axis < 3; axis++)
-        d.omega[axis] = (axis == which ? high : low) * (octant >> axis & 1 ? 1.0f : -1.0f);
+    ordinates_direction(number, d.omega);
     float rise = d.omega[0] * p->up.x + d.omega[1] * p->up.y + d.omega[2] * p->up.z;
     float upper = rise < 0 ? 1.0f : 0.0f; /* what travels down came from above */
-    d.border = (lanes){0, upper, 1 - upper, 0};
+    d.border = (lanes){0, p->above ? upper * p->above[number] : upper, 1 - upper, 0};
     d.kx = fabsf(d.omega[0]) / p->cell[0];
     d.ky = fabsf(d.omega[1]) / p->cell[1];
     d.kz = fabsf(d.omega[2]) / p->cell[2];

@@ -1,25 +1,29 @@
-/* A light grid as one eye sees it: the sum of shaders/light/lightgrid.glsl, once a cell rather than once a step. What is
+/* A light grid as one eye sees it, once a cell rather than once a step: the source function towards the eye. What is
  * between cells is interpolated, so a cell stands for the directions from the eye to all points around its middle, and near
  * the eye these are many: there the means over them are taken, or whole pictures would flash when the eye passes a cell
- * that lies before the sun. */
+ * that lies before the sun.
+ *
+ * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p, cap)
+ * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is
+ *
+ *   E exp(-x) (p - r) + f L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g' flux of what was scattered before)
+ *
+ * L is the radiance that comes through the grid along the ray (seen_sweep.c). To first order it would be mean + 3 flux, which at
+ * the cloud's surface, where all light goes one way, is a fifth too much: the light there is a step, not a cosine. */
 #include <math.h>
+#include <stdlib.h>
 
-#include "shape/lightgrid.h"
+#include "light/seen.h"
 #include "shape/phase.h"
 
 typedef struct seen_light {
-    float sun[3], upper[3], lower[3]; /* albedo included, but of a grid with albedos */
-    float mean_cosine, peak, rest;
+    float sun[3], upper[3], lower[3];
+    shape_vec3 to_sun;
+    float rest, cap; /* mean cosine without the peak; the largest value of the phase function without it */
 } seen_light;
 
-static float hg(float g, float cosine)
-{
-    float d = 1 + g * g - 2 * g * cosine;
-    return (1 - g * g) / (12.566371f * d * sqrtf(d));
-}
-
 /* A phase function's mean over the points that a cell stands for, at a mean distance of `away2` cells, squared; same: see
- * see_cell. That of Henyey and Greenstein with its peak cut: the form and the two numbers were fitted to means by drawing
+ * add_sources. That of Henyey and Greenstein with its peak cut: the form and the two numbers were fitted to means by drawing
  * such points, as tests/test_lightgrid.c does. */
 static float mean_phase(const shape_medium *medium, float cosine, float same, float away2)
 {
@@ -30,68 +34,136 @@ static float mean_phase(const shape_medium *medium, float cosine, float same, fl
     return (1 - g * g) / (12.566371f * d * sqrtf(d));
 }
 
-/* same: the mean cosine between the direction to the cell's middle and those to the points that it stands for. */
-static void see_cell(const seen_light *l, const float *cell, float albedo, float phase, float cos_sun,
-                     float same, shape_vec3 travel, float travel_up, float *rgba)
+/* The value at which a phase function is cut off so that `kept` of its integral is left. */
+static float find_cap(const shape_medium *medium, float kept)
 {
-    float direct = expf(-cell[0]), wide = expf(-(1 - albedo * l->peak) * cell[0]);
-    float beam = direct * phase + (1 - l->peak) * (wide - direct) * hg(same * l->rest, cos_sun);
-    float turned = 3 * same * l->mean_cosine;
-    float sun = cell[1] + turned * (cell[4] * travel.x + cell[5] * travel.y + cell[6] * travel.z);
-    float upper = cell[2] + turned * cell[7] * travel_up;
-    sun = beam + (sun > 0 ? sun : 0);
-    upper = upper > 0 ? upper : 0;
-    for (int i = 0; i < 3; i++)
-        rgba[i] = l->sun[i] * sun + l->upper[i] * upper + l->lower[i] * cell[3];
-    rgba[3] = 0;
+    enum { POINTS = 256, HALVINGS = 30 };
+    float value[POINTS], weight[POINTS], sum = 0, low = 0, high = 0;
+    if (kept >= 1)
+        return INFINITY;
+    for (int i = 0; i < POINTS; i++) {
+        float u = ((float)i + 0.5f) / POINTS; /* cos = 1 - 2 u^4: most of them in the peak */
+        value[i] = shape_phase(medium, 1 - 2 * u * u * u * u);
+        weight[i] = u * u * u;
+        sum += value[i] * weight[i];
+        high = fmaxf(high, value[i]);
+    }
+    for (int k = 0; k < HALVINGS; k++) {
+        float middle = 0.5f * (low + high), below = 0;
+        for (int i = 0; i < POINTS; i++)
+            below += fminf(value[i], middle) * weight[i];
+        if (below < kept * sum)
+            low = middle;
+        else
+            high = middle;
+    }
+    return high;
 }
 
-void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
-                          const shape_light *light, const float sky_upper[3], const float sky_lower[3],
-                          shape_dvec3 eye, float *rgba)
+static seen_grid make_grid(const shape_lightgrid *grid, const shape_volume_cloud *cloud, const shape_sky *sky,
+                           shape_dvec3 eye)
 {
-    const shape_medium *medium = &cloud->medium;
-    seen_light l = {.mean_cosine = shape_phase_mean_cosine(medium)};
-    shape_delta_scaling(l.mean_cosine, &l.peak, &l.rest);
-    float albedo = grid->albedos ? 1 : medium->albedo;
-    for (int i = 0; i < 3; i++) {
-        l.sun[i] = albedo * light->sun_irradiance[i];
-        l.upper[i] = albedo * sky_upper[i];
-        l.lower[i] = albedo * sky_lower[i];
-    }
-    const double(*m)[4] = cloud->frame.m;
+    seen_grid s = {.grid = grid, .cloud = cloud, .sky = sky};
     shape_dvec3 e = shape_frame_point(&cloud->inverse, eye);
     shape_vec3 size = shape_vec3_sub(grid->box.max, grid->box.min);
-    int rows = grid->size[1] * grid->size[2];
-    float edge2 = 0;
+    s.eye = shape_vec3_make((float)e.x, (float)e.y, (float)e.z);
     for (int axis = 0; axis < 3; axis++) {
         float edge = (&size.x)[axis] / (float)grid->size[axis];
-        edge2 += edge * edge / 3;
+        float before = ((&s.eye.x)[axis] - (&grid->box.min.x)[axis]) / fmaxf(edge, 1e-30f);
+        (&s.edge.x)[axis] = edge;
+        s.turn[axis] = before > 0.5f ? (int)fminf(before + 0.5f, (float)grid->size[axis]) : 0;
     }
+    return s;
+}
+
+/* A cell's light that was scattered before, in one direction. */
+static float first_order(float mean, float turned, const float *flux, shape_vec3 travel)
+{
+    return fmaxf(mean + turned * (flux[0] * travel.x + flux[1] * travel.y + flux[2] * travel.z), 0);
+}
+
+/* All that a cell sends to the eye but f L goes into rgba, whose [3] is the share of L that is meant; what a ray takes on in it
+ * into added. */
+static void add_sources(const seen_grid *s, const seen_light *l, const seen_cell *look, size_t index,
+                        float *rgba, seen_lanes *added)
+{
+    static const float none[SHAPE_LIGHTGRID_FLUXES] = {0};
+    const shape_medium *medium = &s->cloud->medium;
+    const float *cell = s->grid->cells + index * SHAPE_LIGHTGRID_VALUES;
+    const float *fluxes = s->grid->fluxes ? s->grid->fluxes + index * SHAPE_LIGHTGRID_FLUXES : none;
+    const shape_vec3 v = look->v, e = s->edge,
+                     travel = shape_vec3_scale(v, -1 / fmaxf(shape_vec3_length(v), 1e-20f));
+    /* A point lies beside the middle that it is interpolated from by the square root of a sixth of a cell, rms, along each
+     * axis: two of them turn the direction, by a cosine of 1 - 1/6 over the distance's square, in cells; nearly the same,
+     * with the limit 0 at the eye: */
+    float edge2 = (e.x * e.x + e.y * e.y + e.z * e.z) / 3;
+    float away2 = shape_vec3_dot(v, v) / fmaxf(edge2, 1e-30f), same = away2 / (away2 + 1.0f / 6);
+    float cos_sun = shape_vec3_dot(look->world, l->to_sun);
+    float phase = mean_phase(medium, cos_sun, same, away2), blunt = fminf(phase, l->cap);
+    float albedo = s->grid->albedos ? s->grid->albedos[index] : medium->albedo, thin = 1 - albedo * s->peak;
+    float direct = expf(-cell[0]), wide = expf(-thin * cell[0]);
+    float turned = 3 * same * l->rest, kept = 1 - s->peak;
+    float sun = wide * blunt + kept * first_order(cell[1], turned, cell + 4, travel);
+    float upper = kept * first_order(cell[2], turned, fluxes + 1, travel);
+    float lower = kept * first_order(cell[3], turned, fluxes + 4, travel);
+    float single = direct * (phase - blunt), even = s->peak * (s->swept ? 1 - same : 1);
+    float scattered = thin > 1e-6f ? fluxes[0] * albedo / thin : 0;
+    for (int c = 0; c < 3; c++) {
+        float source = l->sun[c] * sun + l->upper[c] * upper + l->lower[c] * lower;
+        (*added)[c] = scattered * source;
+        rgba[c] = source + l->sun[c] * single +
+                  even * (l->sun[c] * cell[1] + l->upper[c] * cell[2] + l->lower[c] * cell[3]);
+    }
+    (*added)[3] = fluxes[0];
+    rgba[3] = s->swept ? s->peak * same : 0;
+}
+
+static void add_all(const seen_grid *s, const seen_light *l, float *rgba, seen_lanes *added,
+                    seen_lanes *arriving)
+{
+    const int *n = s->grid->size, rows = n[1] * n[2];
 #pragma omp parallel for schedule(static) if (rows > 256)
     for (int row = 0; row < rows; row++)
-        for (int x = 0; x < grid->size[0]; x++) {
-            size_t cell = (size_t)row * (size_t)grid->size[0] + (size_t)x;
-            shape_vec3 v = {
-                grid->box.min.x + size.x * ((float)x + 0.5f) / (float)grid->size[0] - (float)e.x,
-                grid->box.min.y + size.y * ((float)(row % grid->size[1]) + 0.5f) / (float)grid->size[1] -
-                    (float)e.y,
-                grid->box.min.z + size.z * ((float)(row / grid->size[1]) + 0.5f) / (float)grid->size[2] -
-                    (float)e.z};
-            /* A point lies beside the middle that it is interpolated from by the square root of a sixth of a cell, rms,
-             * along each axis: two of them turn the direction, by a cosine of 1 - 1/6 over the distance's square, in cells;
-             * nearly the same, with the limit 0 at the eye: */
-            float away2 = shape_vec3_dot(v, v) / fmaxf(edge2, 1e-30f), same = away2 / (away2 + 1.0f / 6);
-            /* The direction in which one looks, in the cloud's frame and in the world. */
-            v = shape_vec3_scale(v, 1 / fmaxf(shape_vec3_length(v), 1e-20f));
-            shape_vec3 w = {(float)(m[0][0] * (double)v.x + m[0][1] * (double)v.y + m[0][2] * (double)v.z),
-                            (float)(m[1][0] * (double)v.x + m[1][1] * (double)v.y + m[1][2] * (double)v.z),
-                            (float)(m[2][0] * (double)v.x + m[2][1] * (double)v.y + m[2][2] * (double)v.z)};
-            w = shape_vec3_scale(w, 1 / fmaxf(shape_vec3_length(w), 1e-20f));
-            float cos_sun = w.x * (float)light->sun.x + w.y * (float)light->sun.y + w.z * (float)light->sun.z;
-            float phase = mean_phase(medium, cos_sun, same, away2);
-            see_cell(&l, grid->cells + cell * SHAPE_LIGHTGRID_VALUES,
-                     grid->albedos ? grid->albedos[cell] : medium->albedo, phase, cos_sun, same,
-                     shape_vec3_scale(v, -1), -w.y, rgba + cell * 4);
+        for (int x = 0; x < n[0]; x++) {
+            const int at[3] = {x, row % n[1], row / n[1]};
+            size_t i = (size_t)row * (size_t)n[0] + (size_t)x;
+            seen_cell look = seen_look(s, at);
+            add_sources(s, l, &look, i, rgba + 4 * i, &added[i]);
+            arriving[i] = (seen_lanes){0, 0, 0, look.away};
         }
+}
+
+shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
+                                  const shape_light *light, const shape_sky *sky, const float sky_upper[3],
+                                  const float sky_lower[3], shape_dvec3 eye, float *rgba, shape_error *error)
+{
+    const size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
+    seen_grid s = make_grid(grid, cloud, sky, eye);
+    seen_light l = {.to_sun = shape_vec3_make((float)light->sun.x, (float)light->sun.y, (float)light->sun.z)};
+    seen_lanes *added = malloc(cells * sizeof *added), *arriving = malloc(cells * sizeof *arriving);
+    if (!added || !arriving) {
+        free(added);
+        free(arriving);
+        return shape_error_memory(error);
+    }
+    shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &s.peak, &l.rest);
+    l.cap = find_cap(&cloud->medium, 1 - s.peak);
+    for (int c = 0; c < 3; c++) {
+        l.sun[c] = light->sun_irradiance[c];
+        l.upper[c] = sky_upper[c];
+        l.lower[c] = sky_lower[c];
+    }
+    s.swept = s.peak > 0 && grid->fluxes;
+    add_all(&s, &l, rgba, added, arriving);
+    if (s.swept)
+        seen_sweep(&s, added, arriving);
+    float albedo = grid->albedos ? 1 : cloud->medium.albedo;
+    for (size_t i = 0; i < cells; i++) {
+        for (int c = 0; c < 3; c++)
+            rgba[4 * i + (size_t)c] = albedo * (rgba[4 * i + (size_t)c] + rgba[4 * i + 3] * arriving[i][c]);
+        rgba[4 * i + 3] = 0;
+    }
+    free(added);
+    free(arriving);
+    return SHAPE_OK;
 }

@@ -6,7 +6,8 @@ uniform vec3 world_up; // unit
 
 // Source function (radiance per unit of extinction, albedo included) at p of the loaded cloud, towards the eye.
 // direction is the world ray's. Beer's law for the sun, its phase function exactly; the light that left the beam within
-// the phase function's peak goes on as a wider beam; the rest from the grid to first order, mean + 3 g flux.
+// the phase function's peak goes on as a wider beam; the rest from the grid to first order, mean + 3 g flux. The viewer and the
+// march know more: shape_lightgrid_seen follows light through the grid to the eye (docs/light.md).
 vec3 scattered_light(vec3 p, vec3 direction)
 {
     vec4 slot = cloud_texel(cloud_index, 8), size = cloud_texel(cloud_index, 9);

@@ -285,7 +285,7 @@ static void test_voxels_follow_the_view(void **state)
     (void)state;
     sample_scene scene = sample_cumulus(12, 4);
     double predicted, near = voxel_from(&scene, 20, 0.02, &predicted);
-    double far = voxel_from(&scene, 400, 0.02, &predicted), fine = voxel_from(&scene, 20, 0.005, &predicted);
+    double far = voxel_from(&scene, 400, 0.02, &predicted), fine = voxel_from(&scene, 20, 0.002, &predicted);
     assert_true(far > near);
     assert_true(fine < near);
     shape_view view = test_view();

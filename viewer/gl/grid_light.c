@@ -405,14 +405,40 @@ void gl_light_place(const gl_light *light, gl_scene *scene, const shape_volume *
     }
 }
 
-static void compose_one(const gl_light *light, const shape_gl_renderer *r, shape_dvec3 eye, int cloud,
-                        float *to)
+static shape_status compose_one(const gl_light *light, const shape_gl_renderer *r, shape_dvec3 eye, int cloud,
+                                float *to, shape_error *error)
 {
     if (!light->lit[cloud])
-        return;
-    shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light, r->sky_upper,
-                         r->sky_lower, eye, to);
-    gl_law_glow(r, &r->volume->clouds[cloud].medium, cell_count(light->boxes[cloud].size), to);
+        return SHAPE_OK;
+    shape_status status = shape_lightgrid_seen(&light->lit[cloud]->grid, &r->volume->clouds[cloud], &r->light,
+                                               &r->sky, r->sky_upper, r->sky_lower, eye, to, error);
+    if (!status)
+        gl_law_glow(r, &r->volume->clouds[cloud].medium, cell_count(light->boxes[cloud].size), to);
+    return status;
+}
+
+/* Many clouds are shared out, since one by one each would keep all threads waiting for the last. */
+static shape_status compose_all(const gl_light *light, const shape_gl_renderer *r, shape_dvec3 eye,
+                                const size_t *first, shape_error *error)
+{
+    const gl_scene *scene = &r->scene;
+    const int count = scene->shown_count;
+    shape_status status = SHAPE_OK;
+    if (count == 1)
+        return compose_one(light, r, eye, scene->shown[0], light->cells, error);
+#pragma omp parallel for schedule(dynamic)
+    for (int i = 0; i < count; i++) {
+        shape_error own = {0};
+        if (!compose_one(light, r, eye, scene->shown[i], light->cells + 4 * first[i], &own))
+            continue;
+#pragma omp critical
+        {
+            status = own.status;
+            if (error)
+                *error = own;
+        }
+    }
+    return status;
 }
 
 /* Where each shown cloud's cells begin in the scratch, which is as large as all of them together. */
@@ -434,12 +460,11 @@ shape_status gl_light_compose(gl_light *light, shape_gl_renderer *renderer, shap
     if (!first)
         return shape_error_memory(error);
     place_scratch(light, scene, first);
-    /* Many clouds are shared out, since one by one each would keep all threads waiting for the last. */
-#pragma omp parallel for schedule(dynamic)
-    for (int i = 0; i < (count > 1 ? count : 0); i++)
-        compose_one(light, renderer, eye, scene->shown[i], light->cells + 4 * first[i]);
-    if (count == 1)
-        compose_one(light, renderer, eye, scene->shown[0], light->cells);
+    shape_status status = compose_all(light, renderer, eye, first, error);
+    if (status) {
+        free(first);
+        return status;
+    }
     if (!light->seen)
         light->seen = gl_volume_texture(light->size, GL_RGBA32F, GL_RGBA, GL_FLOAT, NULL);
     gl_settle();

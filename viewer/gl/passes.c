@@ -236,7 +236,8 @@ shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error)
 shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *light, shape_error *error)
 {
     const shape_dvec3 *old = &renderer->light.sun, *sun = &light->sun;
-    if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light)
+    if (old->x != sun->x || old->y != sun->y || old->z != sun->z || !renderer->grids.light ||
+        light->sky != renderer->light.sky) /* a clear sky's light comes from its bright parts */
         renderer->light_changed = true;
     renderer->surface.mapped = false;
     renderer->light = *light;

@@ -16,16 +16,22 @@ extern "C" {
 /* Values a cell, all for sources of unit strength, so that colours can change without a new pass:
  *   0     optical depth to the sun, through every cloud
  *   1     mean over directions of the radiance scattered at least once, for a sun of irradiance 1
- *   2, 3  the same for a sky of radiance 1 above the horizon, and below it; unscattered sky light included
+ *   2, 3  the same for a sky of mean radiance 1 above the horizon (a clear sky's is spread as that one is), and of 1 below
+ *         it; unscattered sky light included
  *   4..6  first moment of 1 (mean of radiance times direction of travel), cloud's frame
  *   7     first moment of 2 along the world's y
  */
 enum { SHAPE_LIGHTGRID_VALUES = 8 };
 
+/* What shape_lightgrid_seen needs beside them: 0 the extinction after the delta scaling [1/m], 1..3 the first moment of value
+ * 2, 4..6 that of value 3, cloud's frame. */
+enum { SHAPE_LIGHTGRID_FLUXES = 7 };
+
 typedef struct shape_lightgrid {
     int size[3];      /* cells along x, y, z; cell centres lie half a cell inside the box */
     shape_box box;    /* cloud's frame */
     float *cells;     /* [size z][size y][size x][SHAPE_LIGHTGRID_VALUES] */
+    float *fluxes;    /* [cells][SHAPE_LIGHTGRID_FLUXES]; NULL where scattering was not asked for */
     float *densities; /* mean densities of the cells, where scattered light has been solved for; else NULL */
     float *albedos;   /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
     uint64_t visits;  /* what it took: cells times rounds of the solution for scattered light */
@@ -73,12 +79,14 @@ void shape_lightgrid_free(shape_lightgrid *grid);
 
 /* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid
  * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green, blue
- * and 0, into rgba [cells][4]. The same sum as shaders/light/lightgrid.glsl takes at a point, but near the eye: a cell
- * stands for the directions to all points that are interpolated from it, and gets their mean. sky_upper and sky_lower are
- * shape_sky_mean's. */
-void shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
-                          const shape_light *light, const float sky_upper[3], const float sky_lower[3],
-                          shape_dvec3 eye, float *rgba);
+ * and 0, into rgba [cells][4]. Light scattered within the phase function's peak is what arrives at the cell from behind,
+ * as followed along the ray through the grid, from the sky on; the rest is the grid's to first order, and the sun's first
+ * scattering by the phase function itself with its peak cut off (Potter 1970). Near the eye a cell stands for the
+ * directions to all points that are interpolated from it, and gets their mean. sky is shape_sky_make's of that light,
+ * sky_upper and sky_lower are shape_sky_mean's of it. Errors: memory. */
+shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
+                                  const shape_light *light, const shape_sky *sky, const float sky_upper[3],
+                                  const float sky_lower[3], shape_dvec3 eye, float *rgba, shape_error *error);
 
 /* The share f of scattering in the forward peak and the asymmetry g' of the rest, for a phase function of mean cosine
  * g: f = g^2 and g' = g / (1 + g) for g > 0; f = 0, g' = g else. */
