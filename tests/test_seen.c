@@ -100,6 +100,47 @@ static void a_clear_sky_is_bright_near_the_sun(void **state)
     shape_set_destroy(set);
 }
 
+/* Clouds and eyes as no one has them bring no NaN and no infinity, and nothing below 0. */
+static void awkward_clouds_and_eyes_are_finite(void **state)
+{
+    (void)state;
+    static const struct {
+        double radius, extinction, x, eye;
+    } cases[] = {{1e-3, 1e6, 0, 0},   {1e4, 1e9, 0, 1e4},    {1, 1, 1e6, 1e6},      {1, 1, 1e15, 0},
+                 {1e-15, 1e30, 0, 3}, {1e15, 1e30, 0, 1e15}, {1, 2, 0, 0.02},       {1, 2, 0, 1e15},
+                 {1, 0, 0, 5},        {1, 1e-30, 0, -0.5},   {2, 3, 0, 2.0 / 0.875}};
+    static const float ones[3] = {1, 1, 1};
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        shape_error error;
+        shape_set *set = new_set();
+        shape_cloud *cloud = new_cloud(set, SHAPE_MODEL_UNIFORM);
+        cloud->medium.extinction = (float)cases[k].extinction;
+        cloud->medium.g = k % 2 ? 0.9999f : 0.85f;
+        cloud->field.noise_scale = (float)cases[k].radius;
+        add_sphere(set, 0, cases[k].x, 0, 0, cases[k].radius);
+        shape_volume *volume = new_volume(set);
+        shape_light light = shape_light_defaults();
+        shape_lightgrid_options options = shape_lightgrid_defaults();
+        shape_lightgrid grid;
+        options.resolution = 8;
+        must(shape_lightgrid_build(volume, 0, &light, &options, &grid, &error), &error);
+        size_t cells = (size_t)grid.size[0] * (size_t)grid.size[1] * (size_t)grid.size[2];
+        float *rgba = malloc(cells * 4 * sizeof *rgba);
+        assert_non_null(rgba);
+        shape_sky sky = shape_sky_make(&light);
+        shape_dvec3 eye = {cases[k].eye, 0, 0};
+        must(shape_lightgrid_seen(&grid, &volume->clouds[0], &light, &sky, ones, ones, eye, rgba, &error),
+             &error);
+        for (size_t i = 0; i < 4 * cells; i++)
+            if (!(rgba[i] >= 0 && rgba[i] < 1e12f))
+                fail_msg("case %zu, value %zu: %g", k, i, (double)rgba[i]);
+        free(rgba);
+        shape_lightgrid_free(&grid);
+        shape_volume_destroy(volume);
+        shape_set_destroy(set);
+    }
+}
+
 /* Mean radiance of a ball over the rays that meet it, seen from +z far away. */
 static double look_at_ball(const shape_volume *volume, const shape_light *light)
 {
@@ -161,6 +202,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(furnace),
+        cmocka_unit_test(awkward_clouds_and_eyes_are_finite),
         cmocka_unit_test(a_forward_scattering_ball_is_as_bright_as_by_paths),
         cmocka_unit_test(a_clear_sky_is_bright_near_the_sun),
     };
