@@ -28,10 +28,10 @@ typedef struct ordinates_problem {
     const float *shares;     /* what albedo is multiplied by in each cell; NULL: 1 */
     shape_vec3 sun_travel;   /* unit direction in which sun light travels, grid's frame */
     shape_vec3 up;           /* the world's up, grid's frame, unit */
-    const float *above;      /* [ORDINATES_DIRECTIONS] what the upper half of the sky sends along each; NULL: 1 */
-    float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
-    shape_stop stop;         /* to break off */
-    uint64_t *visits;        /* cells times rounds are added; NULL: not counted */
+    const float *above; /* [ORDINATES_DIRECTIONS] what the upper half of the sky sends along each; NULL: 1 */
+    float *moments;     /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
+    shape_stop stop;    /* to break off */
+    uint64_t *visits;   /* cells times rounds are added; NULL: not counted */
 } ordinates_problem;
 
 /* The direction in which light of that number travels: unit, grid's frame. */

@@ -223,7 +223,7 @@ shape_status gl_scene_load(gl_scene *scene, const shape_volume *volume, shape_er
 static bool is_far_off(const shape_volume_cloud *c, const shape_camera *camera, double width, double height,
                        double wider)
 {
-    shape_dvec3 middle, half;
+    shape_dvec3 middle = {0}, half = {0};
     double radius2 = 0;
     for (int i = 0; i < 3; i++) {
         const double low = (double)(&c->box.min.x)[i], high = (double)(&c->box.max.x)[i];
