@@ -43,7 +43,7 @@ flags="-std=c17 -w -ffp-contract=off -D_XOPEN_SOURCE=700 -DNEPHELE_VERSION=\"$ve
 libraries="-L$tmp/root/usr/lib/aarch64-linux-gnu -lpopt -lmd -ljansson -lm"
 build() { # build FOLDER LEVEL
     mkdir -p "$1"
-    for room in base primitive generate field file tools; do
+    for room in base primitive generate field file light budget tools; do
         folder=$tmp/source/libshape/$room
         files='*.c'
         case $room in

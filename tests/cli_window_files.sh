@@ -12,7 +12,7 @@ test=cli_window_files
 small="--samples 1 --light-grid 8"
 "$bin/neph-gauss" -q --count 8 --seed 2 -o a.neph
 "$bin/neph-gauss" -q --count 8 --seed 5 -o b.neph
-"$bin/neph-gauss" -q --count 8 --seed 9 -o c.neph
+"$bin/neph-gauss" -q --count 30 --max-radius 4 --seed 9 -o c.neph
 "$bin/neph-gauss" -q --count 30 --max-radius 4 -o large.neph
 
 # --- two files

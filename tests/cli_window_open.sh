@@ -11,7 +11,7 @@ cc -std=c17 -D_GNU_SOURCE -O1 -o drop_file "$source/tests/drop_file.c" -lX11 || 
 
 small="--samples 1 --light-grid 6"
 "$bin/neph-gauss" -q --count 6 --seed 2 -o a.neph
-"$bin/neph-gauss" -q --count 12 --seed 5 --extinction 0.5 -o b.neph
+"$bin/neph-gauss" -q --count 30 --max-radius 4 --seed 5 -o b.neph
 echo 'axiom' >wrong.lsys
 "$bin/neph-gauss" -q --count 9 --seed 9 -o c.neph
 clouds=400x180+350+10

@@ -85,6 +85,8 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
     while ((code = poptGetNextOpt(context)) > 0) {
         static char *kept[CLI_MAX_OPTIONS]; /* for the program's life: CLI_TEXT points into it */
         char *text = poptGetOptArg(context);
+        if (!text && all[code - 1]->kind != CLI_FLAG)
+            cli_fail("not enough memory");
         free(kept[code - 1]);
         kept[code - 1] = text;
         cli_store(all[code - 1], text ? text : "");

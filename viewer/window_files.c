@@ -6,59 +6,6 @@
 #include "state_scene.h"
 #include "window_private.h"
 
-static size_t count_primitives(const shape_set *set)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < set->cloud_count; i++)
-        count += shape_primitives_count(shape_set_list_const(set, i));
-    return count;
-}
-
-shape_status window_take_set(window_state *w, shape_set *set, shape_error *error)
-{
-    view_shared *shared = view_shared_make(set);
-    if (!shared)
-        return shape_error_memory(error);
-    view_shared_drop(w->set);
-    w->set = shared;
-    w->set_number++;
-    w->primitives = count_primitives(set);
-    return SHAPE_OK;
-}
-
-void window_open_other(window_state *w, const char *path)
-{
-    shape_error error;
-    view_watch_leave(w->other_watch);
-    w->other_watch = NULL;
-    w->other_error[0] = 0;
-    view_shared_drop(w->other_set);
-    w->other_set = NULL;
-    w->set_number++;
-    snprintf(w->other_path, sizeof w->other_path, "%s", path);
-    if (!path[0])
-        return;
-    view_generator generator = view_generator_of_path(path, w->job->seed);
-    w->other_watch = view_watch_start(path, &generator, NULL, w->wake, &error);
-    if (w->other_watch)
-        view_watch_ask(w->other_watch, &generator);
-    else
-        snprintf(w->other_error, sizeof w->other_error, "%s", error.text);
-    w->state.split = true;
-    w->state.other_method = w->state.method;
-}
-
-shape_status window_take_other(window_state *w, shape_set *set, shape_error *error)
-{
-    view_shared *shared = view_shared_make(set);
-    if (!shared)
-        return shape_error_memory(error);
-    view_shared_drop(w->other_set);
-    w->other_set = shared;
-    w->set_number++;
-    return SHAPE_OK;
-}
-
 static void hear_other(window_state *w)
 {
     view_news news;
@@ -138,17 +85,6 @@ void window_make_command(const window_state *w, const int size[2], bool alpha, c
                                   .size = {size[0], size[1]},
                                   .seed = w->job->options.seed};
     view_command_write(&w->state, &w->base, &command, text, room);
-}
-
-void window_free_name(const window_state *w, const char *suffix, char *path, size_t room)
-{
-    char name[SHAPE_NAME_MAX + 1];
-    cli_bare_name(w->job->path[0] ? w->job->path : w->job->title, "cloud", name);
-    for (int i = 1; i < 10000; i++) {
-        snprintf(path, room, "%s-%04d.%s", name, i, suffix);
-        if (access(path, F_OK))
-            break;
-    }
 }
 
 /* A picture of what a scene cannot hold has the commands alone. */

@@ -90,7 +90,7 @@ void window_listen(window_state *w);
 /* Held keys move the camera by the time that has passed; returns whether any is held. */
 bool window_fly(window_state *w, double seconds);
 
-/* --- window_files.c: the opened files, and what is written --- */
+/* --- window_sets.c: the clouds that are shown --- */
 
 /* Takes the set over. */
 shape_status window_take_set(window_state *w, shape_set *set, shape_error *error);
@@ -98,13 +98,14 @@ shape_status window_take_set(window_state *w, shape_set *set, shape_error *error
 void window_open_other(window_state *w, const char *path);
 /* Shows a set in the right half, which it takes over. */
 shape_status window_take_other(window_state *w, shape_set *set, shape_error *error);
+
+/* --- window_files.c: the opened files, and what is written --- */
+
 /* What the watching threads have read. */
 void window_hear_news(window_state *w);
 /* Asks for another cloud where the generator's settings are not those that were asked for. */
 void window_ask_generator(window_state *w);
 /* The commands that make what is seen. */
-/* A name that is not taken yet, "name-0001.suffix", in the folder that the viewer was started in. */
-void window_free_name(const window_state *w, const char *suffix, char *path, size_t room);
 void window_make_command(const window_state *w, const int size[2], bool alpha, char *text, size_t room);
 void window_take_screenshot(window_state *w, const view_panel_wish *wish);
 
@@ -122,5 +123,7 @@ void window_stop_comparing(window_state *w);
 void window_clear(int width, int height);
 /* Shows a line for a moment. */
 void window_say(window_state *w, const char *text);
+/* A name that is not taken yet, "name-0001.suffix", in the folder that the viewer was started in. */
+void window_free_name(const window_state *w, const char *suffix, char *path, size_t room);
 
 #endif

@@ -1,4 +1,4 @@
-/* The module that openvdb_late.c loads: OpenVDB's functions behind the two names that it exports. */
+/* The module that late_openvdb.cpp loads: OpenVDB's functions behind the two names that it exports. */
 #include "shape/mesh.h"
 #include "shape/vdb_read.h"
 

@@ -260,6 +260,7 @@ typedef struct gl_grids {
 
 /* --- refine.c, first.c: an order carried out; needs no OpenGL --- */
 
+void gl_grids_drop(gl_grids *grids);
 /* Makes of an order something coarse, of what is wholly missing. */
 void gl_order_first(gl_order *order);
 /* Makes what is wanted; ms gets how long light and density took, where they were. The caller drops the grids. */
@@ -350,11 +351,11 @@ struct shape_gl_renderer {
     gl_preview preview;
     gl_surface surface;
     gl_air air;
-    int made_for; /* the programs, see gl_make_programs */
+    int made_for; /* the programs, see make_programs in passes.c */
     shape_light light;
     shape_sky sky;
     float sky_upper[3], sky_lower[3];
-    /* By trees, by lists of primitives, and which volumes each is for (passes.c). */
+    /* By trees, by lists of primitives, and which volumes each is for (view_program.c). */
     GLuint view_programs[2];
     int view_kinds[2];
     GLuint tonemap, density, empty_array;
@@ -366,31 +367,35 @@ struct shape_gl_renderer {
     shape_gl_costs costs;
 };
 
-void gl_grids_drop(gl_grids *grids);
-
 /* Compares a volume that is about to be loaded with the one that is; false where no grids may stay. */
 bool gl_update_begin(shape_gl_renderer *renderer, const shape_volume *volume);
 /* After that volume has been loaded: makes again what differs of the grids that are there. */
 shape_status gl_update_do(shape_gl_renderer *renderer, const gl_order *order, shape_error *error);
 void gl_update_free(gl_update *update);
+/* --- draw.c --- */
+
+/* Over the whole target, or what a scissor leaves of it. */
 void gl_draw_triangle(const shape_gl_renderer *renderer);
 /* What is drawn next is blended into the running mean: sample n counts 1 / (n + 1). */
 void gl_begin_mean(int sample);
 /* What is drawn next is blended into the picture that is there, with this share. */
 void gl_begin_mix(float share);
+
+/* --- view_program.c: the methods that draw the whole picture by one program --- */
+
+bool gl_is_paper(const shape_gl_renderer *renderer);
+/* Compiles what the first picture will need. */
+shape_status gl_prepare_view(shape_gl_renderer *renderer, shape_error *error);
 /* Steps, candidates and starts of a method. */
 void gl_set_method(const shape_gl_renderer *renderer, const shape_view *view, GLuint program);
-
 /* Uses the view program, by lists or by trees, and tells it all that it may ask for; *used gets it. */
 shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
                          shape_error *error);
 
-/* Makes the programs anew where they are for other air, or another law of light. */
-shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error);
-
 /* --- law.c: by what points are lit --- */
 
 shape_gl_law gl_law(const shape_gl_renderer *renderer);
+shape_status gl_law_check(const shape_gl_lighting *lighting, shape_error *error);
 /* Whether the sky lights anything by it. */
 bool gl_law_has_sky(shape_gl_law law);
 /* Adds the line by which shaders are made for it, or nothing. */

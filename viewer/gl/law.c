@@ -81,7 +81,7 @@ void gl_set_law(const shape_gl_renderer *r, const gl_grids *grids, GLuint progra
     glUniform1fv(glGetUniformLocation(program, "law_weights"), 8, weights);
 }
 
-static shape_status check(const shape_gl_lighting *l, shape_error *error)
+shape_status gl_law_check(const shape_gl_lighting *l, shape_error *error)
 {
     if (l->law < SHAPE_GL_LAW_GRID || l->law > SHAPE_GL_LAW_OCTAVES)
         return shape_error_set(error, SHAPE_ERROR_ARGUMENT, "lighting: there is no law of that number");
@@ -94,17 +94,4 @@ static shape_status check(const shape_gl_lighting *l, shape_error *error)
             return shape_error_set(error, SHAPE_ERROR_ARGUMENT,
                                    "lighting: ambient and emission must be from 0 to 1e9");
     return SHAPE_OK;
-}
-
-shape_status shape_gl_set_lighting(shape_gl_renderer *r, const shape_gl_lighting *lighting,
-                                   shape_error *error)
-{
-    shape_status status = check(lighting, error);
-    if (status)
-        return status;
-    bool grid = gl_law(r) == SHAPE_GL_LAW_GRID;
-    r->options.lighting = *lighting;
-    if ((gl_law(r) == SHAPE_GL_LAW_GRID) != grid)
-        r->light_changed = true; /* scattered light is solved for the grid alone */
-    return gl_make_programs(r, error);
 }

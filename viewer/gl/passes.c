@@ -6,7 +6,6 @@
 #include <time.h>
 
 #include "gl_private.h"
-#include "shape/random.h"
 
 static double now_ms(void)
 {
@@ -24,22 +23,31 @@ shape_gl_options shape_gl_defaults(void)
     return options;
 }
 
-static bool is_paper(const shape_gl_renderer *renderer)
-{
-    return renderer->options.method == SHAPE_GL_PAPER || renderer->options.method == SHAPE_GL_PAPER_NDT;
-}
-
 /* Whether a sample is drawn in parts: only the exact view walks trees and may take long for a pixel. */
 static bool in_parts(const shape_gl_renderer *renderer)
 {
     return renderer->options.method == SHAPE_GL_EXACT;
 }
 
-static const char *view_shader(const shape_gl_renderer *renderer)
+/* Makes the programs anew where they are for other air, or another law of light. */
+static shape_status make_programs(shape_gl_renderer *renderer, shape_error *error)
 {
-    if (is_paper(renderer))
-        return "view/paper.frag";
-    return "view/march.frag";
+    bool air = gl_has_air(renderer);
+    int wanted = 2 + air + 2 * (int)gl_law(renderer), made_for = renderer->made_for;
+    if (wanted == made_for)
+        return SHAPE_OK;
+    renderer->made_for = 0;
+    shape_status status = SHAPE_OK;
+    if (renderer->options.method == SHAPE_GL_DEFAULT) {
+        gl_preview_drop_programs(&renderer->preview, made_for && made_for % 2 == wanted % 2);
+        if (!renderer->options.early)
+            status = gl_preview_compile(renderer, GL_PREVIEW_PROGRAMS, error);
+    } else if (renderer->volume) {
+        status = gl_prepare_view(renderer, error);
+    }
+    if (!status)
+        renderer->made_for = wanted;
+    return status;
 }
 
 shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer **renderer,
@@ -55,7 +63,7 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
         made->options.early = false;
     shape_status status = SHAPE_OK;
     if (options->method == SHAPE_GL_DEFAULT)
-        status = gl_make_programs(made, error);
+        status = make_programs(made, error);
     if (!status && !made->options.early)
         status = gl_program_create(folder, whole, "view/tonemap.frag", "", &made->tonemap, error);
     if (!status && in_parts(made))
@@ -68,13 +76,6 @@ shape_status shape_gl_create(const shape_gl_options *options, shape_gl_renderer 
     glGenQueries(1, &made->query);
     *renderer = made;
     return SHAPE_OK;
-}
-
-void gl_grids_drop(gl_grids *grids)
-{
-    gl_light_drop(grids->light);
-    gl_baked_drop(grids->baked);
-    memset(grids, 0, sizeof *grids);
 }
 
 void shape_gl_destroy(shape_gl_renderer *renderer)
@@ -120,66 +121,6 @@ static float window_length(const shape_volume *volume)
     return count > MANY ? (float)(extent * IN_A_WINDOW / count) : 1e30f;
 }
 
-static bool is_plain(const shape_volume *volume)
-{
-    for (size_t i = 0; i < volume->cloud_count; i++)
-        if (volume->clouds[i].detailed || volume->clouds[i].field.model == SHAPE_MODEL_METABALL ||
-            volume->clouds[i].field.model == SHAPE_MODEL_GRID)
-            return false;
-    return true;
-}
-
-/* What the shaders of the whole picture may leave out for a volume: a number for each such set of lines. */
-static int view_defines(const shape_gl_renderer *renderer, char *defines, size_t size)
-{
-    const shape_volume *volume = renderer->volume;
-    bool air = gl_has_air(renderer);
-    const shape_volume_cloud *c = volume->cloud_count == 1 ? &volume->clouds[0] : NULL;
-    bool plain = is_plain(volume), spheres = c && !c->list->ellipsoid_count;
-    int octaves = c ? c->field.octaves : 0;
-    snprintf(defines, size, "%s%s%s%s", plain ? "#define FIELD_PLAIN\n" : "", c ? "#define ONE_CLOUD\n" : "",
-             spheres ? "#define SPHERES_ONLY\n" : "", air ? "#define AIR\n" : "");
-    if (c)
-        snprintf(defines + strlen(defines), size - strlen(defines), "#define OCTAVES %d\n", octaves);
-    gl_law_define(renderer, defines, size);
-    return 1 + plain + 2 * spheres + 4 * air + 8 * octaves + 1024 * (int)gl_law(renderer);
-}
-
-/* The view program of the methods that have one for the whole picture, as fits the volume; listed: the one that reads
- * lists of primitives. */
-static shape_status find_program(shape_gl_renderer *renderer, bool listed, GLuint *program,
-                                 shape_error *error)
-{
-    enum { ROOM = 160 };
-    char defines[ROOM];
-    int kind = view_defines(renderer, defines, ROOM);
-    GLuint *known = &renderer->view_programs[listed];
-    if (renderer->view_kinds[listed] != kind) {
-        glDeleteProgram(*known);
-        *known = 0;
-        renderer->view_kinds[listed] = 0;
-        if (listed)
-            strcat(defines, "#define LISTED\n");
-        shape_status status = gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
-                                                view_shader(renderer), defines, known, error);
-        if (status)
-            return status;
-        renderer->view_kinds[listed] = kind;
-    }
-    *program = *known;
-    return SHAPE_OK;
-}
-
-/* Compiles what the first picture will need. */
-static shape_status prepare_program(shape_gl_renderer *renderer, shape_error *error)
-{
-    GLuint program;
-    if (renderer->options.method == SHAPE_GL_DEFAULT)
-        return SHAPE_OK;
-    bool listed = renderer->options.method == SHAPE_GL_EXACT && gl_tiles_can_list(renderer->volume);
-    return find_program(renderer, listed, &program, error);
-}
-
 shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volume, shape_error *error)
 {
     double start = now_ms();
@@ -196,40 +137,20 @@ shape_status shape_gl_load(shape_gl_renderer *renderer, const shape_volume *volu
     renderer->volume = volume;
     renderer->window_length = window_length(volume);
     for (size_t i = 0; i < volume->cloud_count; i++)
-        if (is_paper(renderer) && volume->clouds[i].field.model == SHAPE_MODEL_GRID)
+        if (gl_is_paper(renderer) && volume->clouds[i].field.model == SHAPE_MODEL_GRID)
             return shape_error_set(
                 error, SHAPE_ERROR_ARGUMENT,
                 "the paper's methods draw primitives, not voxel grids (choose another --method)");
-    shape_status status = prepare_program(renderer, error);
+    shape_status status = gl_prepare_view(renderer, error);
     if (!status)
         status = gl_scene_load(&renderer->scene, volume, error);
     if (!status && renderer->options.method != SHAPE_GL_DEFAULT)
         gl_scene_load_noise(&renderer->scene, volume->noise);
     if (!status && renderer->options.method == SHAPE_GL_EXACT)
         status = gl_volumes_load(&renderer->scene, volume, error);
-    if (!status && !is_paper(renderer))
+    if (!status && !gl_is_paper(renderer))
         status = gl_surface_load(renderer, error);
     renderer->costs.upload_ms = now_ms() - start;
-    return status;
-}
-
-shape_status gl_make_programs(shape_gl_renderer *renderer, shape_error *error)
-{
-    bool air = gl_has_air(renderer);
-    int wanted = 2 + air + 2 * (int)gl_law(renderer), made_for = renderer->made_for;
-    if (wanted == made_for)
-        return SHAPE_OK;
-    renderer->made_for = 0;
-    shape_status status = SHAPE_OK;
-    if (renderer->options.method == SHAPE_GL_DEFAULT) {
-        gl_preview_drop_programs(&renderer->preview, made_for && made_for % 2 == wanted % 2);
-        if (!renderer->options.early)
-            status = gl_preview_compile(renderer, GL_PREVIEW_PROGRAMS, error);
-    } else if (renderer->volume) {
-        status = prepare_program(renderer, error);
-    }
-    if (!status)
-        renderer->made_for = wanted;
     return status;
 }
 
@@ -243,7 +164,20 @@ shape_status shape_gl_light(shape_gl_renderer *renderer, const shape_light *ligh
     renderer->light = *light;
     renderer->sky = shape_sky_make(light);
     shape_sky_mean(&renderer->sky, renderer->sky_upper, renderer->sky_lower);
-    return gl_make_programs(renderer, error);
+    return make_programs(renderer, error);
+}
+
+shape_status shape_gl_set_lighting(shape_gl_renderer *r, const shape_gl_lighting *lighting,
+                                   shape_error *error)
+{
+    shape_status status = gl_law_check(lighting, error);
+    if (status)
+        return status;
+    bool grid = gl_law(r) == SHAPE_GL_LAW_GRID;
+    r->options.lighting = *lighting;
+    if ((gl_law(r) == SHAPE_GL_LAW_GRID) != grid)
+        r->light_changed = true; /* scattered light is solved for the grid alone */
+    return make_programs(r, error);
 }
 
 int shape_gl_largest(void)
@@ -282,65 +216,6 @@ static shape_status prepare_targets(shape_gl_renderer *renderer, int width, int 
     renderer->width = width;
     renderer->height = height;
     return status;
-}
-
-void gl_set_method(const shape_gl_renderer *r, const shape_view *view, GLuint program)
-{
-    bool exact = r->options.method == SHAPE_GL_EXACT;
-    double pixel = 2 * tan(view->fov * 3.14159265358979 / 360) / view->height;
-    /* exact: cells of the noise; default: voxels. */
-    gl_set_float(program, "step_scale", exact ? 0.4f : 1.5f);
-    gl_set_float(program, "step_deep", exact ? 1.0f : 0.0f);
-    gl_set_int(program, "seed", (int)(uint32_t)(shape_hash(r->options.seed) ^ shape_hash(1)));
-    gl_set_float(program, "window_length", r->window_length);
-    gl_set_float(program, "step_depth", 0.25f);
-    gl_set_float(program, "step_growth", (float)pixel * (exact ? 1.5f : 2.0f));
-    gl_set_float(program, "transmittance_end", exact ? 1e-4f : 4e-3f);
-    gl_set_int(program, "paper_sweep", r->options.method == SHAPE_GL_PAPER_NDT);
-    gl_set_int(program, "paper_lod", r->options.paper_lod);
-}
-
-void gl_draw_triangle(const shape_gl_renderer *renderer)
-{
-    glBindVertexArray(renderer->empty_array);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void gl_begin_mix(float share)
-{
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
-    glBlendColor(0, 0, 0, share);
-}
-
-void gl_begin_mean(int sample)
-{
-    if (sample > 0)
-        gl_begin_mix(1.0f / (float)(sample + 1));
-}
-
-shape_status gl_use_view(shape_gl_renderer *renderer, const gl_frame *frame, bool listed, GLuint *used,
-                         shape_error *error)
-{
-    GLuint program;
-    shape_status status = find_program(renderer, listed, &program, error);
-    if (status)
-        return status;
-    glUseProgram(program);
-    glViewport(0, 0, frame->part->width, frame->part->height);
-    gl_set_scene(&renderer->scene, program);
-    gl_set_grids(&renderer->grids, program);
-    gl_set_law(renderer, &renderer->grids, program);
-    gl_set_tiles(frame->tiles, program);
-    gl_set_light(renderer, program);
-    gl_set_camera(frame, program);
-    gl_set_method(renderer, frame->view, program);
-    gl_set_surface(renderer, program);
-    gl_set_air(renderer, program, frame->camera->origin);
-    if (gl_has_air(renderer)) /* it lights the air even where it is not seen */
-        gl_set_int(program, "sky_kind", (int)renderer->sky.kind);
-    *used = program;
-    return SHAPE_OK;
 }
 
 /* A sample of the other methods: one program over the whole picture. */
@@ -389,7 +264,7 @@ static shape_status draw_by(shape_gl_renderer *renderer, gl_grids *grids, gl_fra
     }
     gl_scene_place_eye(&renderer->scene, renderer->volume, frame->camera);
     shape_status status = SHAPE_OK;
-    if (frame->sample == 0 && !is_paper(renderer) && gl_law(renderer) == SHAPE_GL_LAW_GRID)
+    if (frame->sample == 0 && !gl_is_paper(renderer) && gl_law(renderer) == SHAPE_GL_LAW_GRID)
         status = gl_light_compose(grids->light, renderer, frame->camera->origin, error);
     if (status)
         return status;
@@ -475,73 +350,6 @@ bool shape_gl_pending(const shape_gl_renderer *renderer)
 void shape_gl_finish(void)
 {
     glFinish();
-}
-
-/* Adds up the steps and fetches of what was drawn into a target; buffer has room for it. */
-static void add_work(const gl_target *target, int width, int height, float *buffer, double *steps,
-                     double *fetches)
-{
-    glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
-    glReadBuffer(GL_COLOR_ATTACHMENT1);
-    glReadPixels(0, 0, width, height, GL_RGBA, GL_FLOAT, buffer);
-    glReadBuffer(GL_COLOR_ATTACHMENT0);
-    for (size_t i = 0; i < (size_t)width * (size_t)height; i++) {
-        *steps += (double)buffer[4 * i];
-        *fetches += (double)buffer[4 * i + 1];
-    }
-}
-
-shape_status shape_gl_read(shape_gl_renderer *renderer, float *rgba, shape_error *error)
-{
-    size_t width = (size_t)renderer->width, height = (size_t)renderer->height;
-    float *rows = malloc(width * height * 4 * sizeof *rows);
-    if (!rows)
-        return shape_error_memory(error);
-    double steps = 0, fetches = 0;
-    add_work(&renderer->mean, renderer->width, renderer->height, rows, &steps, &fetches);
-    if (renderer->preview.moving)
-        add_work(&renderer->preview.coarse, (renderer->width + 1) / 2, (renderer->height + 1) / 2, rows,
-                 &steps, &fetches);
-    renderer->costs.steps_per_pixel = steps / (double)(width * height);
-    renderer->costs.fetches_per_pixel = fetches / (double)(width * height);
-    glBindFramebuffer(GL_FRAMEBUFFER, renderer->mean.framebuffer);
-    glReadPixels(0, 0, renderer->width, renderer->height, GL_RGBA, GL_FLOAT, rows);
-    for (size_t y = 0; y < height; y++)
-        memcpy(rgba + y * width * 4, rows + (height - 1 - y) * width * 4, width * 4 * sizeof *rows);
-    free(rows);
-    return SHAPE_OK;
-}
-
-void shape_gl_show(shape_gl_renderer *renderer, float exposure_stops, int width, int height)
-{
-    if (!renderer->tonemap && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
-                                                "view/tonemap.frag", "", &renderer->tonemap, NULL))
-        return;
-    glViewport(0, 0, width, height);
-    glUseProgram(renderer->tonemap);
-    gl_bind(renderer->tonemap, "accumulated", 0, GL_TEXTURE_2D, renderer->mean.textures[0]);
-    gl_set_float(renderer->tonemap, "exposure", exp2f(exposure_stops));
-    glBindVertexArray(renderer->empty_array);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-}
-
-void shape_gl_show_heat(shape_gl_renderer *renderer, shape_gl_heat kind, float full, int width, int height)
-{
-    if (!renderer->heat && gl_program_create(renderer->options.shader_folder, "view/fullscreen.vert",
-                                             "view/heat.frag", "", &renderer->heat, NULL))
-        return;
-    glViewport(0, 0, width, height);
-    glUseProgram(renderer->heat);
-    gl_bind(renderer->heat, "work", 0, GL_TEXTURE_2D, renderer->mean.textures[1]);
-    gl_set_float(renderer->heat, "full", full);
-    gl_bind(renderer->heat, "accumulated", 1, GL_TEXTURE_2D, renderer->mean.textures[0]);
-    gl_set_int(renderer->heat, "kind", (int)kind);
-    gl_draw_triangle(renderer);
-}
-
-shape_gl_costs shape_gl_get_costs(const shape_gl_renderer *renderer)
-{
-    return renderer->costs;
 }
 
 shape_status shape_gl_densities(shape_gl_renderer *renderer, const shape_vec3 *points, int count, float *rgba,

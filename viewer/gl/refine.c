@@ -35,6 +35,13 @@ struct gl_refinement {
     shape_error error;
 };
 
+void gl_grids_drop(gl_grids *grids)
+{
+    gl_light_drop(grids->light);
+    gl_baked_drop(grids->baked);
+    memset(grids, 0, sizeof *grids);
+}
+
 static double now_ms(void)
 {
     struct timespec time;
