@@ -38,15 +38,15 @@ use()
     drag 60 246 120 246 # kappa
     key ctrl+z
     key ctrl+z
-    fold 62 85 108 154 223
-    type_at 60 292 12000
-    type_at 150 292 12000
-    type_at 60 246 big.neph
+    fold 62 85 108 177 246
+    type_at 60 315 12000
+    type_at 150 315 12000
+    type_at 60 269 big.neph
     import -window "$window" typed.png
-    press 200 269 # open
+    press 200 292 # open
     until_true 30 is_open || fail "the panel's field opens no file: $(cat viewer.log)"
     at 600 100 mousedown 1 mousemove --window "$window" 560 120 mouseup 1
-    press 72 338 # screenshot
+    press 72 361 # screenshot
     until_true 60 has_bar || fail "a large picture has no bar"
     key Escape
     until_true 20 grep -q "broken off: picture file" viewer.log || fail "Esc does not break a picture off: $(cat viewer.log)"

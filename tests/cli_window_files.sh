@@ -51,7 +51,7 @@ open neph-gauss --make gauss --seed 4 --size 640x300 $small
 key Tab
 seen=290x260+340+20
 shot start
-drag 60 223 110 223
+drag 60 223 135 223
 at 620 280
 unlike $seen more start 0.02
 grep -q 'read again' viewer.log || fail "nothing is said of the new cloud: $(cat viewer.log)"
@@ -70,7 +70,7 @@ quit
 open neph-gauss-0001 neph-gauss-0001.png --size 640x300 $small
 key Tab
 shot scene
-drag 110 240 60 240
+drag 135 240 60 240
 at 620 280
 unlike $seen scene-changed scene 0.02
 key ctrl+z

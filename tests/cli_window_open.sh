@@ -39,11 +39,11 @@ drop a.neph
 until_true 30 titled "$PWD/a.neph" || fail "the last of two dropped files is not opened: $(xdotool getwindowname "$window")"
 
 # --- the panel: brighter, then a screenshot as EXR
-fold 62 85 108 154 223
+fold 62 85 108 177 246
 key plus plus
-press 147 315 # EXR
+press 147 338 # EXR
 shot bright
-press 72 338 # screenshot
+press 72 361 # screenshot
 has_picture() { [ -s a-0001.exr ]; }
 until_true 60 has_picture || fail "the panel writes no EXR: $(ls; cat viewer.log)"
 key Tab

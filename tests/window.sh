@@ -76,7 +76,15 @@ find_window()
 quit()
 {
     # The window is gone before the key is let go, which xdotool takes amiss; a key that stays down would close the next one.
-    key Escape 2>/dev/null || true
+    # Where light is still being made, the first Escape breaks that off, and another one ends the viewer.
+    for _ in 1 2 3 4 5 6 7 8; do
+        key Escape 2>/dev/null || true
+        for _ in 1 2 3 4 5 6; do
+            sleep 0.5
+            kill -0 "$viewer" 2>/dev/null || break 2
+        done
+        xdotool keyup Escape 2>/dev/null || true
+    done
     # With its last window a screen begins anew, and answers nobody for a moment.
     xdotool keyup Escape 2>/dev/null || { sleep 1; xdotool keyup Escape; }
     status=0
