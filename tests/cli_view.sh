@@ -54,6 +54,14 @@ cells() { sed -n 's/.*light grid of \([0-9]*\) cells.*/\1/p' "$1"; }
 grep -q "more than --error" said0.0001 || fail "an error that is not kept is not said"
 ! grep -q "more than --error" said0.3 || fail "--error 0.3 is not kept"
 "$bin/neph-render" --compare error0.3.pfm error0.0001.pfm --tolerance 0.005 >/dev/null || fail "--error 0.3 is off by more"
+# Far off, too, it has the cells that it says: more than without --error, where they are as few as the cloud has pixels. Were they
+# the same, the picture would be, to the bit.
+far="--headless --size 48x27 --sky none --eye 0,4,150 --fov 30"
+# shellcheck disable=SC2086
+"$bin/neph-view" spiral.neph $far --error 0.3 -o far.pfm 2>said || fail "--error failed far off"
+# shellcheck disable=SC2086
+"$bin/neph-view" spiral.neph -q $far --light-grid "$(cells said)" --samples 8 -o pixels.pfm
+! cmp -s far.pfm pixels.pfm || fail "far off, --error has no more cells than pixels need"
 code=0
 "$bin/neph-view" spiral.neph --headless --error 0.1 --samples 3 -o x.png 2>/dev/null || code=$?
 [ "$code" -eq 2 ] || fail "--error --samples ended with $code, not 2"

@@ -192,6 +192,7 @@ static void choose_for_window(view_job *job)
     shape_gl_context_destroy(context);
     view_job_free(job);
     job->options.bake_voxels = chosen.voxels;
+    job->options.fixed_light = true;
     job->options.light.resolution = job->state->light_grid = chosen.light_cells;
     job->samples = job->state->samples = chosen.samples;
     describe_choice(&chosen, change, job->chosen, sizeof job->chosen);

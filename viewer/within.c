@@ -14,6 +14,7 @@ static shape_status draw(const view_job *job, const view_quality *quality, const
 {
     shape_gl_options options = job->options;
     options.light.resolution = quality->light_cells;
+    options.fixed_light = true; /* or what is half as fine may be no coarser */
     options.bake_voxels = quality->voxels;
     shape_status status = shape_gl_create(&options, renderer, error);
     if (status)

@@ -138,8 +138,9 @@ static void look_through(shape_marcher *marcher, const shape_volume *volume)
         marcher->clouds[i].cloud = &volume->clouds[i];
 }
 
-static shape_status try_octaves(chooser *c, int grid, const probe_picture *whole, probe_picture *picture,
-                                shape_error *error)
+/* whole: the picture with all of them, and the steps of rung `step`. */
+static shape_status try_octaves(chooser *c, int grid, int step, const probe_picture *whole,
+                                probe_picture *picture, shape_error *error)
 {
     shape_status status = SHAPE_OK;
     c->cut_count = 1;
@@ -150,7 +151,7 @@ static shape_status try_octaves(chooser *c, int grid, const probe_picture *whole
         /* A cut that changes nothing costs what the one before it does. */
         c->cut_error[k] = c->cut_error[k - 1];
         if (make_cut(c, chooser_pixels[k], &c->cut_cost[k])) {
-            status = probe_march(&c->probe, c->grids[grid], picture, error);
+            status = look(c, grid, step, picture, error);
             c->cut_error[k] = probe_change(&c->probe, picture, whole);
         }
         c->cut_count = k + 1;
@@ -251,10 +252,16 @@ static shape_status try_light(chooser *c, int step, probe_picture *pictures, sha
     return status;
 }
 
-/* The finer the light, the more of it a step can miss: up the rungs once more, with the finest grid. */
-static shape_status confirm_steps(chooser *c, probe_picture *spare, shape_error *error)
+/* The finer the light, the more of it a step can miss: up the rungs once more, with the finest grid. Not where fewer steps miss
+ * no more of it than they did of coarse light: `fewer` is its picture with those of rung `step`. */
+static shape_status confirm_steps(chooser *c, int step, const probe_picture *fewer, probe_picture *spare,
+                                  shape_error *error)
 {
+    const double alike = 1.1;
     shape_status status = look(c, c->tried - 1, c->step_count - 1, &c->best, error);
+    if (!status && step < c->step_count - 1 &&
+        probe_change(&c->probe, fewer, &c->best) <= alike * c->step_error[step])
+        return SHAPE_OK;
     while (!status && c->step_count + 1 < STEP_RUNGS) {
         int last = c->step_count - 1;
         status = look(c, c->tried - 1, last + 2, spare, error);
@@ -289,15 +296,17 @@ shape_status chooser_measure(chooser *c, shape_error *error)
     c->probe.work = work;
     if (!status)
         status = try_steps(c, STEPS_GRID, pictures, error);
-    if (!status)
-        status = try_octaves(c, STEPS_GRID, &pictures[c->step_count - 1], &pictures[STEP_RUNGS], error);
+    /* What octaves and light change is told with as few steps as will do; only every other rung's were looked through. */
     int step = 0;
     while (step < c->step_count - 1 && c->step_error[step] > 0.5 * c->allowed)
-        step++;
+        step += 2;
+    probe_picture *lit = pictures + STEP_RUNGS + 1;
     if (!status)
-        status = try_light(c, step, pictures + STEP_RUNGS + 1, error);
+        status = try_octaves(c, STEPS_GRID, step, &pictures[step], &pictures[STEP_RUNGS], error);
     if (!status)
-        status = confirm_steps(c, &pictures[0], error);
+        status = try_light(c, step, lit, error);
+    if (!status)
+        status = confirm_steps(c, step, &lit[c->tried - 1], &pictures[0], error);
     free(pictures);
     return status;
 }

@@ -2,6 +2,7 @@
  * depth 10,000, numbers that 16 bits do not hold. */
 #include "light/march.h"
 #include "row.h"
+#include "shape/gaussian.h"
 #include "shape/image.h"
 
 /* --- how many --- */
@@ -18,6 +19,62 @@ static void empty_cloud(double x, double *plain, double *ours)
     *plain = (double)(0.5f * (low + high));
     *ours = stability_look(&scene, &light, &options, shape_dvec3_make(0, 0, 9), shape_dvec3_make(0, 0, -1));
     sample_end(&scene);
+}
+
+/* The depth of that many balls of 1 m in one place. Plain: the bin that a centre falls into among sixteen
+ * between the least and the greatest of them (Wald 2007); what is in
+ * none is not found. */
+static void in_one_place(double count, double *plain, double *ours)
+{
+    enum { BINS = 16 };
+    const shape_dvec3 place = {3, 4, 5};
+    sample_scene scene = sample_begin(SHAPE_MODEL_UNIFORM, 0.1f);
+    float low = INFINITY, high = -INFINITY;
+    for (int i = 0; i < (int)count; i++) {
+        sample_add(&scene, (float)place.x, (float)place.y, (float)place.z, 1, 1, 1);
+        low = fminf(low, (float)place.x), high = fmaxf(high, (float)place.x);
+    }
+    sample_finish(&scene);
+    float bin = BINS / (high - low) * ((float)place.x - low);
+    *plain = bin >= 0 && bin <= BINS ? 1 : 0; /* not with a NaN */
+    shape_candidates found = {0};
+    shape_error error;
+    double depth;
+    stability_must(shape_volume_optical_depth(scene.volume, shape_dvec3_make(3, 4, 30),
+                                              shape_dvec3_make(0, 0, -1), 0, INFINITY, 0.1f, &found, &depth,
+                                              &error),
+                   &error);
+    *ours = depth / 0.2;
+    shape_candidates_free(&found);
+    sample_end(&scene);
+}
+
+/* Primitives left of that many that a hollow cumulus draws, the least of a hundred seeds. Plain: each that is in the core
+ * (Jiménez section 3.6.1) is left out. */
+static void hollow(double count, double *plain, double *ours)
+{
+    shape_gaussian options = shape_gaussian_defaults();
+    options.count = (size_t)count;
+    shape_primitives list = {0};
+    shape_gaussian_report report;
+    shape_error error;
+    *plain = *ours = INFINITY;
+    for (uint64_t seed = 1; seed <= 100; seed++) {
+        size_t left = 0;
+        options.hollow = false;
+        stability_must(shape_gaussian_make(&options, seed, &list, &report, &error), &error);
+        for (size_t i = 0; i < list.sphere_count; i++) {
+            const shape_sphere *s = &list.spheres[i];
+            left += !shape_gaussian_in_core(&options, shape_dvec3_make(s->x, s->y, s->z));
+        }
+        *plain = fmin(*plain, (double)left);
+        list.sphere_count = 0;
+        options.hollow = true;
+        stability_must(shape_gaussian_make(&options, seed, &list, &report, &error), &error);
+        *ours = fmin(*ours, (double)list.sphere_count);
+        list.sphere_count = 0;
+    }
+    free(list.spheres);
 }
 
 /* That many balls of 1 m strung over 10 m; plain: each marched from its entry to its exit (Algorithm 1). */
@@ -176,6 +233,13 @@ static void deep_grid(double depth, double *plain, double *ours)
 static const stability_row rows[] = {
     {"cloud without primitives", "the middle of the box of nothing is NaN", "empty boxes are asked for first",
      "radiance before a sky of 1", 1, 1, empty_cloud, 0},
+    {"one primitive, in bins between the outermost centres (Wald 2007)",
+     "16 / 0 times 0: it is in no bin, and no ray finds it", "a leaf is not divided", RATIO, 0.999, 1.001,
+     in_one_place, 1},
+    {"100 primitives in one place", "the same", "an axis without extent is not cut; without any, halves",
+     RATIO, 0.999, 1.001, in_one_place, 100},
+    {"one primitive of a hollow cumulus (Jiménez section 3.6.1)", "in the core it is left out: no cloud",
+     "a cloud of core alone stays whole", "primitives left, the least of 100 seeds", 1, 1, hollow, 1},
     {"20 primitives of 1 m over 10 m",
      "each marched on its own (Jiménez Algorithm 1): exact only where they are apart",
      "joined intervals, each marched once", RATIO, 0.999, 1.001, many_on_a_ray, 20},

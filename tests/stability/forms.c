@@ -1,5 +1,6 @@
 /* Formulas that divide by zero or cancel: rotations, metaballs, thresholds, phase functions, the sky. */
 #include "field/density_model.h"
+#include "light/majorant.h"
 #include "row.h"
 #include "shape/meshfit.h"
 #include "shape/phase.h"
@@ -53,6 +54,25 @@ static void threshold(double kappa, double *plain, double *ours)
     float k = (float)kappa, n = 0, u = 0;
     *plain = (double)expf(-u / ((1 - k) + 2 * k * n));
     *ours = (double)density_gamma(k, n, u);
+}
+
+/* The noise at which Eq. 2 ends the cloud half a radius from a centre, over exp(-1/2), its value for kappa 0. Plain: n = exp(-u /
+ * ((1 - k) + 2 k n)) solved for the n on its right side. Ours: the bound of the path tracer's grid that is further off. */
+static void edge_noise(double kappa, double *plain, double *ours)
+{
+    const int half = MAJORANT_TABLE / 2;
+    const double u = 0.5, truth = exp(-u);
+    float k = (float)kappa, n = expf(-(float)u);
+    *plain = (double)(((float)u / -logf(n) - (1 - k)) / (2 * k)) / truth;
+    shape_volume_cloud cloud = {.field = {.kappa = k}};
+    majorant_cloud *bounds = calloc(1, sizeof *bounds);
+    if (!bounds)
+        abort();
+    bounds->cloud = &cloud;
+    majorant_threshold_tables(bounds);
+    double top = (double)bounds->top[half] / truth, bottom = (double)bounds->bottom[half] / truth;
+    *ours = fabs(top - 1) > fabs(bottom - 1) ? top : bottom;
+    free(bounds);
 }
 
 /* --- phase functions --- */
@@ -116,6 +136,9 @@ static const stability_row rows[] = {
      "d is held above a thousandth of the radius", "F", 1, 1.0001e6, metaball_pole, 0},
     {"kappa 1, noise 0, at a centre (Jiménez Eq. 2)", "exp(-0/0)", "the denominator is held above 1e-6",
      "gamma", 0, 1, threshold, 1},
+    {"kappa 0, the noise that bounds a spheroid (Jiménez Eq. 2, solved for it)", "divides by 2 kappa",
+     "Eq. 2 over and over, from below and from above", "noise at the edge over the truth", 0.999, 1.001,
+     edge_noise, 0},
     {"Henyey-Greenstein, g = 0.9999, straight on", "1 + g^2 - 2 g c cancels in single precision",
      "with h = abs(g): (1 - h)^2 + 2 h (1 - abs(c))", "peak over its true value", 0.999, 1.001, phase_peak,
      0.9999},

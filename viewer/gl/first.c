@@ -29,6 +29,7 @@ shape_status shape_gl_first_make(const shape_gl_options *options, const shape_vo
                               .want_light = true,
                               .want_baked = true,
                               .light_options = options->light,
+                              .light_pixels = options->fixed_light ? gl_largest_side(volume, view) : 0,
                               .all_clouds = options->light.opaque || light->air.visibility > 0,
                               .view = *view,
                               .bake_voxels = options->bake_voxels,

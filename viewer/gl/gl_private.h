@@ -138,6 +138,8 @@ typedef struct gl_order {
     const gl_update *update; /* an edit's, which light_from is from before: only this is done; NULL: none */
     shape_stop stop;
     shape_lightgrid_options light_options;
+    double
+        light_pixels; /* the side of the cloud that light_options.resolution is for; 0: as fine as pixels */
     int scattering_cells; /* shape_lightgrid_options.scattering_resolution */
     shape_view view;
     size_t bake_voxels; /* at most, of all clouds together */
@@ -154,6 +156,8 @@ enum {
 
 /* Metres of the cloud's frame that a pixel covers where the cloud is nearest; 0 inside its box. */
 double gl_pixel_size(const shape_volume_cloud *cloud, const shape_view *view);
+/* The longest side in pixels of the largest cloud in sight, where that is at its nearest; 0 where there is none. */
+double gl_largest_side(const shape_volume *volume, const shape_view *view);
 /* Of two finenesses, in things a metre. */
 gl_fit gl_fit_sizes(double has, double wants);
 

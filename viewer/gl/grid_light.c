@@ -56,20 +56,43 @@ void gl_light_drop(gl_light *light)
     free(light);
 }
 
-/* How many cells along its longest side a cloud's light needs in a view: a cell about a pixel and a half, in steps of the
- * square root of 2, so that a view that moves a little keeps its light. */
+static float longest_side(const shape_volume_cloud *c)
+{
+    float longest = 0;
+    for (int axis = 0; axis < 3; axis++)
+        longest = fmaxf(longest, (&c->box.max.x)[axis] - (&c->box.min.x)[axis]);
+    return longest;
+}
+
+double gl_largest_side(const shape_volume *volume, const shape_view *view)
+{
+    shape_camera camera = shape_view_camera(view);
+    double largest = 0;
+    for (size_t i = 0; i < volume->cloud_count; i++) {
+        const shape_volume_cloud *c = &volume->clouds[i];
+        /* Where the eye is inside, it fills the picture. */
+        if (c->tree->count && gl_in_sight(c, &camera, 1))
+            largest =
+                fmax(largest, fmin((double)longest_side(c) / gl_pixel_size(c, view), 4.0 * view->height));
+    }
+    return largest;
+}
+
+/* How many cells along its longest side a cloud's light needs in a view: a cell about a pixel and a half, or its share of the
+ * largest cloud's; in steps of the square root of 2, so that a view that moves a little keeps its light. */
 static int wanted_cells(const gl_order *order, size_t cloud)
 {
-    enum { FEWEST = 12 };
     const shape_volume_cloud *c = &order->volume->clouds[cloud];
     int most = order->light_options.resolution;
     if (order->paper)
         return most;
-    float longest = 0;
-    for (int axis = 0; axis < 3; axis++)
-        longest = fmaxf(longest, (&c->box.max.x)[axis] - (&c->box.min.x)[axis]);
-    double metre = gl_pixel_size(c, &order->view), cells = most;
-    while (cells > FEWEST && cells / sqrt(2) * 1.5 * metre >= (double)longest)
+    double pixels = 1.5, fewest = 12, cells = most;
+    if (order->light_pixels > 0) {
+        pixels = order->light_pixels / most;
+        fewest = fmax(4, most / 8.0);
+    }
+    double metre = gl_pixel_size(c, &order->view);
+    while (cells > fewest && cells / sqrt(2) * pixels * metre >= (double)longest_side(c))
         cells /= sqrt(2);
     return (int)(cells + 0.5);
 }

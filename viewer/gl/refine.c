@@ -293,6 +293,7 @@ static gl_order whole_order(const shape_gl_renderer *r, const shape_view *view)
                       .light = &r->light,
                       .paper = r->options.method == SHAPE_GL_PAPER || r->options.method == SHAPE_GL_PAPER_NDT,
                       .light_options = light_options,
+                      .light_pixels = r->options.fixed_light ? gl_largest_side(r->volume, view) : 0,
                       .all_clouds = r->options.light.opaque || gl_has_air(r),
                       .view = *view,
                       .bake_voxels = r->options.bake_voxels,

@@ -55,6 +55,9 @@ typedef struct shape_gl_options {
     shape_gl_lighting lighting; /* to begin with; default: by the grid, powder 2, 8 octaves, nothing else */
     const char *shader_folder;  /* read shaders from here instead of the built-in ones; NULL */
     shape_lightgrid_options light;
+    /* The largest cloud in sight has light.resolution cells along its longest side in whatever view, and the others as many
+     * fewer as they are smaller in the picture; default: a cell is a pixel and a half at least. */
+    bool fixed_light;
     size_t bake_voxels; /* of all clouds' baked grids together, at most */
     uint64_t seed;      /* of the random starts of rays; default 1 */
     bool no_background; /* the sky lights the clouds and is not seen behind them */
