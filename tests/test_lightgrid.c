@@ -364,56 +364,6 @@ static void awkward_clouds_give_finite_grids(void **state)
     shape_set_destroy(set);
 }
 
-/* Clear air lit by the sun alone: what is seen of a cell is the phase function's mean over the points that are interpolated
- * from it (a tent along each axis), here by drawing such points. The formula is fitted: an eighth is allowed, and
- * 0.016 (a fifth of even scattering), where the value at the cell's middle alone is off by up to forty times. */
-static void near_cells_are_seen_as_their_means(void **state)
-{
-    (void)state;
-    enum { SIDE = 9, MIDDLE = (4 * SIDE + 4) * SIDE + 4, POINTS = 200000 };
-    const float none[3] = {0, 0, 0};
-    const double g = 0.85;
-    shape_set *set = new_set();
-    new_cloud(set, SHAPE_MODEL_UNIFORM);
-    add_sphere(set, 0, 0, 0, 0, 4.5);
-    shape_volume *volume = new_volume(set);
-    shape_error error;
-    shape_light light = light_from(0, 90);
-    shape_sky sky = shape_sky_make(&light);
-    shape_lightgrid grid = {.size = {SIDE, SIDE, SIDE}, .box = {{-4.5f, -4.5f, -4.5f}, {4.5f, 4.5f, 4.5f}}};
-    grid.cells = calloc(SIDE * SIDE * SIDE * SHAPE_LIGHTGRID_VALUES, sizeof *grid.cells);
-    float *seen = malloc(SIDE * SIDE * SIDE * 4 * sizeof *seen);
-    assert_true(grid.cells && seen);
-    shape_random random = shape_random_seed(11, 0);
-    double last = 0;
-    for (int k = 0; k < 8; k++) {
-        const double away = k < 7 ? 0.25 * (1 << k / 2) : 0.01, side = k % 2 ? -1 : 1;
-        double mean = 0, middle = (1 - g * g) / (4 * pi * pow(1 + g * g - 2 * g * side, 1.5));
-        shape_dvec3 eye =
-            shape_dvec3_make(0, -side * away, 0); /* looks up to the cell, and the sun; or down to it */
-        must(shape_lightgrid_seen(&grid, &volume->clouds[0], &light, &sky, none, none, eye, seen, &error),
-             &error);
-        for (int i = 0; i < POINTS; i++) {
-            shape_dvec3 p;
-            for (int axis = 0; axis < 3; axis++)
-                (&p.x)[axis] = shape_random_unit(&random) - shape_random_unit(&random) - (&eye.x)[axis];
-            double cosine = p.y / fmax(shape_dvec3_length(p), 1e-12);
-            mean += (1 - g * g) / (4 * pi * pow(1 + g * g - 2 * g * cosine, 1.5)) / POINTS;
-        }
-        double got = (double)seen[4 * MIDDLE] / (double)light.sun_irradiance[0];
-        print_message("%.2f cells away, %s the sun: %.4f, mean %.4f; middle %.4f\n", away,
-                      side > 0 ? "towards" : "away from", got, mean, middle);
-        assert_true(fabs(got - mean) < mean / 8 + 0.016);
-        last = got;
-    }
-    /* Past the middle nothing flashes: it is nearly the same from all sides. */
-    assert_true(fabs(last * 4 * pi - 1) < 0.02);
-    free(seen);
-    shape_lightgrid_free(&grid);
-    shape_volume_destroy(volume);
-    shape_set_destroy(set);
-}
-
 static void checks_name_what_is_wrong(void **state)
 {
     (void)state;
@@ -450,7 +400,6 @@ int main(void)
         cmocka_unit_test(scale_and_extinction_trade),
         cmocka_unit_test(grid_of_2018_is_transmittance_and_a_trace),
         cmocka_unit_test(awkward_clouds_give_finite_grids),
-        cmocka_unit_test(near_cells_are_seen_as_their_means),
         cmocka_unit_test(checks_name_what_is_wrong),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -176,17 +176,21 @@ static shape_status light_channels(shape_marcher *m, size_t i, shape_dvec3 eye, 
         cells = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
         m->work->cells += cells;
         m->work->visits += cloud->grid.visits;
-        float *seen = calloc(cells, 4 * sizeof *seen);
-        if (!seen)
+        float *seen = calloc(cells, MARCH_SEEN * sizeof *seen);
+        if (!cloud->seen)
+            cloud->seen = calloc(cells, MARCH_SEEN_COLOURED * sizeof *seen);
+        if (!seen || !cloud->seen) {
+            free(seen);
             return shape_error_memory(error);
+        }
         status = shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, &m->sky, m->upper, m->lower, eye,
                                       seen, error);
-        if (!cloud->seen)
-            cloud->seen = seen;
-        for (size_t k = 0; k < cells; k++)
-            cloud->seen[4 * k + (size_t)c] = seen[4 * k + (size_t)c];
-        if (cloud->seen != seen)
-            free(seen);
+        for (size_t k = 0; k < cells; k++) {
+            float *to = cloud->seen + MARCH_SEEN_COLOURED * k;
+            to[c] = seen[MARCH_SEEN * k + (size_t)c];
+            to[3 + c] = seen[MARCH_SEEN * k + 3];
+        }
+        free(seen);
         if (status)
             return status;
     }
@@ -197,6 +201,7 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
 {
     march_cloud *cloud = &m->clouds[i];
     cloud->cloud = &m->volume->clouds[i];
+    cloud->cap = shape_beam_cap(&cloud->cloud->medium);
     cloud->hidden = m->options.resolutions && m->options.resolutions[i] == 0;
     shape_dvec3 sun = shape_frame_direction(&cloud->cloud->inverse, m->light.sun);
     if (cloud->cloud->field.model == SHAPE_MODEL_GRID)
@@ -212,7 +217,7 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
     m->work->visits += cloud->grid.visits;
     if (status || m->options.light != SHAPE_MARCH_GRID)
         return status;
-    cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], 4 * sizeof *cloud->seen);
+    cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], MARCH_SEEN * sizeof *cloud->seen);
     if (!cloud->seen)
         return shape_error_memory(error);
     return shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, &m->sky, m->upper, m->lower, eye,

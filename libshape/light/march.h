@@ -5,15 +5,20 @@
 #include "field/grid_ray.h"
 #include "light/bluenoise.h"
 #include "shape/air.h"
+#include "shape/beam.h"
 #include "shape/lightgrid.h"
 #include "shape/march.h"
+
+/* A cell as the eye sees it: red, green, blue and the beam (shape_lightgrid_seen); of a coloured cloud a beam for each. */
+enum { MARCH_SEEN = 4, MARCH_SEEN_COLOURED = 6 };
 
 /* A cloud with what its light needs. */
 typedef struct march_cloud {
     const shape_volume_cloud *cloud;
     shape_lightgrid grid; /* of all light, of depths, or that of 2018; else without cells */
     grid_way sun;         /* model grid: towards it, t in metres */
-    float *seen;          /* SHAPE_MARCH_GRID: its cells as the eye sees them, RGB and 0 */
+    float *seen;          /* SHAPE_MARCH_GRID: its cells as the eye sees them, MARCH_SEEN numbers each */
+    float cap;            /* shape_beam_cap's */
     bool hidden;          /* it throws shadows, and is not drawn */
 } march_cloud;
 
@@ -52,6 +57,8 @@ typedef struct march_ray {
     shape_dvec3 shift;    /* from the ray to where it is looked at, where starts are locked to a grid */
     double depth, rgb[3]; /* gathered so far */
     shape_air_ray air;    /* where the marcher has air */
+    const march_cloud *beam_cloud; /* that `beam` is of; NULL: none yet */
+    shape_beam beam;
 } march_ray;
 
 /* --- march_path.c: the joined intervals of all clouds on a ray --- */
@@ -90,8 +97,8 @@ double march_depth(march_ray *ray, shape_dvec3 world, const march_way *way, cons
 double march_shaded(double shade, double depth);
 /* The share of the light that comes there along the way by Harris' recurrence. */
 double march_harris(march_ray *ray, shape_dvec3 world, const march_way *way, double albedo);
-/* Red, green and blue of `seen` at a point of its cloud's frame, as march_grid_value has each. */
-void march_grid_colour(const shape_lightgrid *grid, const float *seen, shape_vec3 p, double rgb[3]);
+/* All `values` values of `seen` at a point of its cloud's frame, as march_grid_value has each. */
+void march_grid_values(const shape_lightgrid *grid, const float *seen, int values, shape_vec3 p, double *to);
 /* Value `value` of a grid at a point of its cloud's frame, between cell centres; constant beyond the outermost. */
 double march_grid_value(const shape_lightgrid *grid, const float *cells, int values, int value, shape_vec3 p);
 

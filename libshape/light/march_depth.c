@@ -50,13 +50,14 @@ double march_grid_value(const shape_lightgrid *grid, const float *cells, int val
     return sum;
 }
 
-void march_grid_colour(const shape_lightgrid *grid, const float *seen, shape_vec3 p, double rgb[3])
+void march_grid_values(const shape_lightgrid *grid, const float *seen, int values, shape_vec3 p, double *to)
 {
     neighbours near = find_neighbours(grid, p);
-    rgb[0] = rgb[1] = rgb[2] = 0;
+    for (int c = 0; c < values; c++)
+        to[c] = 0;
     for (int k = 0; k < 8; k++)
-        for (int c = 0; c < 3; c++)
-            rgb[c] += near.share[k] * (double)seen[4 * near.cell[k] + (size_t)c];
+        for (int c = 0; c < values; c++)
+            to[c] += near.share[k] * (double)seen[near.cell[k] * (size_t)values + (size_t)c];
 }
 
 /* Where a ray leaves the box around all clouds; 0 where it misses it. */

@@ -93,13 +93,22 @@ static void add_lamp(march_ray *ray, const lit_point *at, double rgb[3])
 }
 
 /* The eye's own grid has the albedo in it, but for clouds of several colours. */
-static void look_up(const lit_point *at, const float albedo[3], double rgb[3])
+static void look_up(march_ray *ray, const lit_point *at, const float albedo[3], double rgb[3])
 {
     const march_cloud *cloud = at->cloud;
-    bool coloured = shape_cloud_is_coloured(cloud->cloud);
-    march_grid_colour(&cloud->grid, cloud->seen, at->p, rgb);
-    for (int c = 0; c < 3 && coloured; c++)
-        rgb[c] *= (double)albedo[c];
+    const shape_light *light = &ray->marcher->light;
+    const bool coloured = shape_cloud_is_coloured(cloud->cloud);
+    double seen[MARCH_SEEN_COLOURED];
+    if (ray->beam_cloud != cloud)
+        ray->beam = shape_beam_make(&cloud->cloud->medium, cloud->cap,
+                                    (float)shape_dvec3_dot(ray->direction, light->sun));
+    ray->beam_cloud = cloud;
+    march_grid_values(&cloud->grid, cloud->seen, coloured ? MARCH_SEEN_COLOURED : MARCH_SEEN, at->p, seen);
+    for (int c = 0; c < 3; c++) {
+        float own = coloured ? albedo[c] : cloud->cloud->medium.albedo;
+        float beam = shape_beam_source(&ray->beam, own, (float)seen[coloured ? 3 + c : 3]);
+        rgb[c] = (coloured ? (double)own : 1) * seen[c] + (double)(light->sun_irradiance[c] * beam);
+    }
 }
 
 static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
@@ -109,7 +118,7 @@ static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
     float albedo[3];
     shape_cloud_albedo(at->cloud->cloud, at->p, albedo);
     if (grid)
-        look_up(at, albedo, rgb);
+        look_up(ray, at, albedo, rgb);
     double depth = 0, value = 0;
     march_way sun = march_sun_way(m);
     if (!grid && (m->has_sun || sky))

@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "shape/beam.h"
 #include "shape/phase.h"
 
 static void put(float texel[4], double x, double y, double z, double w)
@@ -52,6 +53,7 @@ void shape_record_fill(shape_record record, const shape_volume_cloud *c, const s
     put(record[17], c->medium.lobe_mix, mean, share, rest);
     for (int i = 24; i < SHAPE_RECORD_TEXELS; i++)
         put(record[i], 0, 0, 0, 0);
+    record[35][3] = fminf(shape_beam_cap(&c->medium), 1e30f);
     if (c->detailed)
         fill_details(record, c, places);
 }

@@ -1,10 +1,10 @@
 /* A light grid as one eye sees it, once a cell rather than once a step: the source function towards the eye. What is
  * between cells is interpolated, so a cell stands for the directions from the eye to all points around its middle, and near
- * the eye these are many: there the means over them are taken, or whole pictures would flash when the eye passes a cell
- * that lies before the sun.
+ * the eye these are many: there the means over them are taken. The sun's first scattering, whose phase function is a
+ * constant of the ray, is left to the rays (beam.c): by cells, pictures flashed when the eye passed one that lay before the sun.
  *
  * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p, cap)
- * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is
+ * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is, with the rays' share,
  *
  *   E exp(-x) (p - r) + f L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g' flux of what was scattered before)
  *
@@ -14,6 +14,7 @@
 #include <stdlib.h>
 
 #include "light/seen.h"
+#include "shape/beam.h"
 #include "shape/phase.h"
 
 typedef struct seen_light {
@@ -21,44 +22,6 @@ typedef struct seen_light {
     shape_vec3 to_sun;
     float rest, cap; /* mean cosine without the peak; the largest value of the phase function without it */
 } seen_light;
-
-/* A phase function's mean over the points that a cell stands for, at a mean distance of `away2` cells, squared; same: see
- * add_sources. That of Henyey and Greenstein with its peak cut: the form and the two numbers were fitted to means by drawing
- * such points, as tests/test_lightgrid.c does. */
-static float mean_phase(const shape_medium *medium, float cosine, float same, float away2)
-{
-    float blunt = 0.2f * same / (away2 + 1.5f), g = same * medium->g;
-    if (medium->phase != SHAPE_PHASE_HG)
-        return same * shape_phase(medium, fmaxf(cosine - 0.6f * blunt, -1)) + (1 - same) / 12.566371f;
-    float d = 1 + g * g - 2 * g * cosine + blunt;
-    return (1 - g * g) / (12.566371f * d * sqrtf(d));
-}
-
-/* The value at which a phase function is cut off so that `kept` of its integral is left. */
-static float find_cap(const shape_medium *medium, float kept)
-{
-    enum { POINTS = 256, HALVINGS = 30 };
-    float value[POINTS], weight[POINTS], sum = 0, low = 0, high = 0;
-    if (kept >= 1)
-        return INFINITY;
-    for (int i = 0; i < POINTS; i++) {
-        float u = ((float)i + 0.5f) / POINTS; /* cos = 1 - 2 u^4: most of them in the peak */
-        value[i] = shape_phase(medium, 1 - 2 * u * u * u * u);
-        weight[i] = u * u * u;
-        sum += value[i] * weight[i];
-        high = fmaxf(high, value[i]);
-    }
-    for (int k = 0; k < HALVINGS; k++) {
-        float middle = 0.5f * (low + high), below = 0;
-        for (int i = 0; i < POINTS; i++)
-            below += fminf(value[i], middle) * weight[i];
-        if (below < kept * sum)
-            low = middle;
-        else
-            high = middle;
-    }
-    return high;
-}
 
 static seen_grid make_grid(const shape_lightgrid *grid, const shape_volume_cloud *cloud, const shape_sky *sky,
                            shape_dvec3 eye)
@@ -82,8 +45,8 @@ static float first_order(float mean, float turned, const float *flux, shape_vec3
     return fmaxf(mean + turned * (flux[0] * travel.x + flux[1] * travel.y + flux[2] * travel.z), 0);
 }
 
-/* All that a cell sends to the eye but f L goes into rgba, whose [3] is the share of L that is meant; what a ray takes on in it
- * into added. */
+/* All that a cell sends to the eye but f L and the sun's first scattering goes into rgba, whose [3] is the share of L that is
+ * meant; what a ray takes on in it into added. */
 static void add_sources(const seen_grid *s, const seen_light *l, const seen_cell *look, size_t index,
                         float *rgba, seen_lanes *added)
 {
@@ -98,21 +61,19 @@ static void add_sources(const seen_grid *s, const seen_light *l, const seen_cell
      * with the limit 0 at the eye: */
     float edge2 = (e.x * e.x + e.y * e.y + e.z * e.z) / 3;
     float away2 = shape_vec3_dot(v, v) / fmaxf(edge2, 1e-30f), same = away2 / (away2 + 1.0f / 6);
-    float cos_sun = shape_vec3_dot(look->world, l->to_sun);
-    float phase = mean_phase(medium, cos_sun, same, away2), blunt = fminf(phase, l->cap);
+    float phase = shape_phase(medium, shape_vec3_dot(look->world, l->to_sun));
+    float blunt = fminf(same * phase + (1 - same) / 12.566371f, l->cap);
     float albedo = s->grid->albedos ? s->grid->albedos[index] : medium->albedo, thin = 1 - albedo * s->peak;
-    float direct = expf(-cell[0]), wide = expf(-thin * cell[0]);
-    float turned = 3 * same * l->rest, kept = 1 - s->peak;
-    float sun = wide * blunt + kept * first_order(cell[1], turned, cell + 4, travel);
+    float turned = 3 * same * l->rest, kept = 1 - s->peak, beam = expf(-thin * cell[0]) * blunt;
+    float sun = kept * first_order(cell[1], turned, cell + 4, travel);
     float upper = kept * first_order(cell[2], turned, fluxes + 1, travel);
     float lower = kept * first_order(cell[3], turned, fluxes + 4, travel);
-    float single = direct * (phase - blunt), even = s->peak * (s->swept ? 1 - same : 1);
+    float even = s->peak * (s->swept ? 1 - same : 1);
     float scattered = thin > 1e-6f ? fluxes[0] * albedo / thin : 0;
     for (int c = 0; c < 3; c++) {
         float source = l->sun[c] * sun + l->upper[c] * upper + l->lower[c] * lower;
-        (*added)[c] = scattered * source;
-        rgba[c] = source + l->sun[c] * single +
-                  even * (l->sun[c] * cell[1] + l->upper[c] * cell[2] + l->lower[c] * cell[3]);
+        (*added)[c] = scattered * (source + l->sun[c] * beam);
+        rgba[c] = source + even * (l->sun[c] * cell[1] + l->upper[c] * cell[2] + l->lower[c] * cell[3]);
     }
     (*added)[3] = fluxes[0];
     rgba[3] = s->swept ? s->peak * same : 0;
@@ -147,7 +108,7 @@ shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volum
         return shape_error_memory(error);
     }
     shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &s.peak, &l.rest);
-    l.cap = find_cap(&cloud->medium, 1 - s.peak);
+    l.cap = shape_beam_cap(&cloud->medium);
     for (int c = 0; c < 3; c++) {
         l.sun[c] = light->sun_irradiance[c];
         l.upper[c] = sky_upper[c];
@@ -159,9 +120,10 @@ shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volum
         seen_sweep(&s, added, arriving);
     float albedo = grid->albedos ? 1 : cloud->medium.albedo;
     for (size_t i = 0; i < cells; i++) {
+        float thin = fmaxf(1 - s.peak * (grid->albedos ? grid->albedos[i] : cloud->medium.albedo), 1e-6f);
         for (int c = 0; c < 3; c++)
             rgba[4 * i + (size_t)c] = albedo * (rgba[4 * i + (size_t)c] + rgba[4 * i + 3] * arriving[i][c]);
-        rgba[4 * i + 3] = 0;
+        rgba[4 * i + 3] = expf(-thin * grid->cells[i * SHAPE_LIGHTGRID_VALUES]);
     }
     free(added);
     free(arriving);

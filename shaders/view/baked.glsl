@@ -3,13 +3,14 @@
 #ifdef AIR
 #include "view/air.glsl"
 #endif
-#ifdef LAW
 #include "light/phase.glsl"
+#ifdef LAW
 #include "light/law.glsl"
 uniform highp sampler3D light_depth; // optical depth to the sun, placed like the light grids
 #define LIGHT_GRIDS light_depth
 #else
-uniform highp sampler3D light_seen; // source function towards the eye, placed like them
+#include "light/beam.glsl"
+uniform highp sampler3D light_seen; // source function towards the eye and the beam, placed like them
 #define LIGHT_GRIDS light_seen
 #endif
 uniform highp sampler3D baked;      // density, distance in blocks of 4 voxels; all clouds in one atlas
@@ -61,10 +62,14 @@ void load_baked(int c, vec3 direction)
     light_base = cloud_origin * factor + offset;
     light_slope = cloud_direction * factor;
     fetches += 6.0;
+    vec4 own = cloud_texel(c, 35);
+    float droplet = cloud_texel(c, 9).w;
 #ifdef LAW
-    law_load(c, cloud_texel(c, 16), cloud_texel(c, 17), cloud_texel(c, 9).w, cloud_texel(c, 35).rgb, direction);
-    fetches += 4.0;
+    law_load(c, cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.rgb, direction);
+#else
+    beam_load(cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.w, direction);
 #endif
+    fetches += 4.0;
 }
 
 vec2 baked_at(float t)
@@ -80,7 +85,7 @@ vec3 light_at(float t)
 #ifdef LAW
     vec3 light = law_light(texture(light_depth, place).r);
 #else
-    vec3 light = texture(light_seen, place).rgb;
+    vec3 light = beam_light(texture(light_seen, place));
 #endif
 #ifdef AIR
     light = through_air(light, t);

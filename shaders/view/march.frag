@@ -19,13 +19,14 @@ uniform float step_depth;     // optical depth up to which they do beyond a thir
 uniform float step_deep;      // how much longer steps get where little shines through: 1 + step_deep at the end
 uniform float transmittance_end;
 
-#ifdef LAW
 #include "light/phase.glsl"
+#ifdef LAW
 #include "light/law.glsl"
 uniform highp sampler3D light_depth; // optical depth to the sun
 #define LIGHT_GRIDS light_depth
 #else
-uniform highp sampler3D light_seen; // source function towards the eye, see viewer/gl/grid_light.c
+#include "light/beam.glsl"
+uniform highp sampler3D light_seen; // source function towards the eye and the beam, see viewer/gl/grid_light.c
 #define LIGHT_GRIDS light_seen
 #endif
 
@@ -64,7 +65,12 @@ vec3 light_at(vec3 p, float t)
     fetches += 3.0;
     vec3 light = law_light(texture(light_depth, place).r);
 #else
-    vec3 light = texture(light_seen, place).rgb;
+    for (int k = cloud_index == beam_cloud ? 1 : 0; k < 1; k++) { // once a ray and cloud; a loop, as in light/law.glsl
+        beam_load(cloud_texel(cloud_index, 16), cloud_texel(cloud_index, 17), size.w, cloud_texel(cloud_index, 35).w, ray);
+        beam_cloud = cloud_index;
+        fetches += 3.0;
+    }
+    vec3 light = beam_light(texture(light_seen, place));
 #endif
 #ifdef AIR
     light = through_air(light, t);

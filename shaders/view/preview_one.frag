@@ -8,10 +8,8 @@
 
 flat in vec4 tile_x, tile_y, tile_z, tile_low, tile_high;
 flat in vec3 tile_baked, tile_baked_offset, tile_light, tile_light_offset, tile_light_low, tile_light_high;
-#ifdef LAW
-flat in vec4 tile_medium, tile_more;
-flat in vec3 tile_glow;
-#endif
+flat in vec4 tile_medium, tile_more, tile_own;
+flat in float tile_droplet;
 
 void load_tile(vec3 ray)
 {
@@ -26,7 +24,9 @@ void load_tile(vec3 ray)
     light_low = tile_light_low;
     light_high = tile_light_high;
 #ifdef LAW
-    law_load(0, tile_medium, tile_more, tile_more.z, tile_glow, ray);
+    law_load(0, tile_medium, tile_more, tile_droplet, tile_own.rgb, ray);
+#else
+    beam_load(tile_medium, tile_more, tile_droplet, tile_own.w, ray);
 #endif
 }
 

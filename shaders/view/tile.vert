@@ -13,10 +13,9 @@ flat out vec4 tile_x, tile_y, tile_z;    // rows of the world-to-cloud matrix; w
 flat out vec4 tile_low, tile_high;       // the cloud's box; w: extinction, voxels a metre of the cloud's frame
 flat out vec3 tile_baked, tile_baked_offset;
 flat out vec3 tile_light, tile_light_offset, tile_light_low, tile_light_high;
-#ifdef LAW
-flat out vec4 tile_medium, tile_more; // texels 16 and 17 of the record; more.z: the droplets' diameter
-flat out vec3 tile_glow;
-#endif
+flat out vec4 tile_medium, tile_more; // texels 16 and 17 of the record
+flat out vec4 tile_own;               // texel 35
+flat out float tile_droplet;
 
 void main()
 {
@@ -31,9 +30,8 @@ void main()
     tile_high = vec4(cloud_texel(c, 4).xyz, cloud_texel(c, 18).w);
     baked_places(c, tile_baked, tile_baked_offset);
     light_places(c, tile_light, tile_light_offset, tile_light_low, tile_light_high);
-#ifdef LAW
     tile_medium = cloud_texel(c, 16);
-    tile_more = vec4(cloud_texel(c, 17).xy, cloud_texel(c, 9).w, 0.0);
-    tile_glow = cloud_texel(c, 35).rgb;
-#endif
+    tile_more = cloud_texel(c, 17);
+    tile_own = cloud_texel(c, 35);
+    tile_droplet = cloud_texel(c, 9).w;
 }

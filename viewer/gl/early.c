@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "gl_private.h"
+#include "shape/beam.h"
 #include "shape/record.h"
 #include "shape/random.h"
 
@@ -26,13 +27,16 @@ typedef struct dense_cloud {
     const float *light; /* 4 numbers a cell; NULL: not lit */
     int cells[3];
     float light_low[3], light_scale[3];
+    const shape_medium *medium;
+    float cap; /* shape_beam_cap's */
 } dense_cloud;
 
 typedef struct painter {
     const gl_frame *frame;
     const dense_cloud *clouds;
     float forward[3], right[3], up[3];
-    float growth; /* of steps, metres a metre */
+    float growth;            /* of steps, metres a metre */
+    float to_sun[3], sun[3]; /* its direction and irradiance */
     uint32_t seed;
     int width, height, across, down, sky_across, sky_down; /* the picture, its first pass, the sky */
     int stride; /* pixels from a ray of the first pass to the next */
@@ -48,6 +52,8 @@ typedef struct crossing {
     float t0, t1, voxel;                 /* where its box is; metres of the world along the ray */
     float base[3], slope[3];             /* places among its voxels */
     float light_base[3], light_slope[3]; /* and cells */
+    shape_beam beam;
+    const float *sun; /* its irradiance */
 } crossing;
 
 typedef struct sight {
@@ -166,13 +172,17 @@ static void light_at(const crossing *x, float t, float light[3])
     const size_t row = 4 * (size_t)n[0], layer = row * (size_t)n[1];
     const float *v = x->cloud->light + 4 * place_in(n, x->light_base, x->light_slope, t, f);
     const float *rows[4] = {v, v + row, v + layer, v + layer + row};
-    for (int k = 0; k < 3; k++) {
+    float seen[4];
+    for (int k = 0; k < 4; k++) {
         float l[4];
         for (int i = 0; i < 4; i++)
             l[i] = rows[i][k] + f[0] * (rows[i][4 + k] - rows[i][k]);
         float l0 = l[0] + f[1] * (l[1] - l[0]), l1 = l[2] + f[1] * (l[3] - l[2]);
-        light[k] = l0 + f[2] * (l1 - l0);
+        seen[k] = l0 + f[2] * (l1 - l0);
     }
+    const float beam = shape_beam_source(&x->beam, x->cloud->medium->albedo, seen[3]);
+    for (int k = 0; k < 3; k++)
+        light[k] = seen[k] + beam * x->sun[k];
 }
 
 /* How far the empty blocks around t reach. */
@@ -265,6 +275,9 @@ static int gather(const painter *p, int x, int y, const float ray[3], crossing *
         crossing found;
         if (!c->voxels || !c->light || !cross(c, ray, &found))
             continue;
+        found.beam = shape_beam_make(c->medium, c->cap,
+                                     ray[0] * p->to_sun[0] + ray[1] * p->to_sun[1] + ray[2] * p->to_sun[2]);
+        found.sun = p->sun;
         if (count == MOST && all[MOST - 1].t0 <= found.t0)
             continue;
         int place = count < MOST ? count++ : MOST - 1;
@@ -403,6 +416,8 @@ static void take_cloud(const shape_gl_renderer *r, const gl_grids *grids, int cl
     const gl_lit *lit = grids->light->lit[cloud];
     memset(to, 0, sizeof *to);
     to->extinction = record[3][3];
+    to->medium = &r->volume->clouds[cloud].medium;
+    to->cap = record[35][3];
     for (int i = 0; i < 3; i++) {
         to->low[i] = record[3][i];
         to->high[i] = record[4][i];
@@ -447,6 +462,8 @@ static void aim(painter *p, const shape_gl_renderer *r, const gl_frame *frame)
         p->forward[i] = (float)(&c->forward.x)[i];
         p->right[i] = (float)(&c->right.x)[i];
         p->up[i] = (float)(&c->up.x)[i];
+        p->to_sun[i] = (float)(&r->light.sun.x)[i];
+        p->sun[i] = r->light.sun_irradiance[i];
     }
     p->growth = 2 * (float)(2 * tan(frame->view->fov * 3.14159265358979 / 360) / frame->view->height);
     p->seed = (uint32_t)(shape_hash(r->options.seed) ^ shape_hash(1));

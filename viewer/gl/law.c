@@ -50,11 +50,8 @@ void gl_law_glow(const shape_gl_renderer *r, const shape_medium *medium, size_t 
 
 void gl_law_place(const shape_gl_renderer *r, gl_scene *scene)
 {
-    float glow[3];
-    for (size_t i = 0; i < r->volume->cloud_count; i++) {
-        find_glow(r, &r->volume->clouds[i].medium, glow);
-        gl_scene_put(scene, (int)i, GLOW_TEXEL, (double)glow[0], (double)glow[1], (double)glow[2], 0);
-    }
+    for (size_t i = 0; i < r->volume->cloud_count; i++)
+        find_glow(r, &r->volume->clouds[i].medium, scene->records + (i * GL_RECORD_TEXELS + GLOW_TEXEL) * 4);
 }
 
 /* The weights of the copies of SHAPE_MARCH_OCTAVES, 1 in all; those that are not summed have none. */
@@ -68,8 +65,11 @@ static void find_weights(int octaves, float weights[8])
 void gl_set_law(const shape_gl_renderer *r, const gl_grids *grids, GLuint program)
 {
     float weights[8], sky[3];
-    if (gl_law(r) == SHAPE_GL_LAW_GRID)
+    if (gl_law(r) == SHAPE_GL_LAW_GRID) {
+        gl_set_dvector(program, "beam_sun_direction", r->light.sun);
+        gl_set_vector(program, "beam_sun", r->light.sun_irradiance);
         return;
+    }
     find_weights(r->options.lighting.octaves, weights);
     for (int c = 0; c < 3; c++)
         sky[c] = 0.5f * (r->sky_upper[c] + r->sky_lower[c]);

@@ -78,10 +78,9 @@ shape_status shape_lightgrid_build_2018_with(const shape_volume *volume, size_t 
 void shape_lightgrid_free(shape_lightgrid *grid);
 
 /* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid
- * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green, blue
- * and 0, into rgba [cells][4]. Light scattered within the phase function's peak is what arrives at the cell from behind,
- * as followed along the ray through the grid, from the sky on; the rest is the grid's to first order, and the sun's first
- * scattering by the phase function itself with its peak cut off (Potter 1970). Near the eye a cell stands for the
+ * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green and blue
+ * of all but the sun's first scattering, and what shape_beam_source makes that of for a ray, into rgba [cells][4]. Light scattered within the phase function's peak is what arrives at the cell from behind,
+ * as followed along the ray through the grid, from the sky on; the rest is the grid's to first order. Near the eye a cell stands for the
  * directions to all points that are interpolated from it, and gets their mean. sky is shape_sky_make's of that light,
  * sky_upper and sky_lower are shape_sky_mean's of it. Errors: memory. */
 shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
