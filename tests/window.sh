@@ -81,7 +81,9 @@ quit()
         key Escape 2>/dev/null || true
         for _ in 1 2 3 4 5 6; do
             sleep 0.5
-            kill -0 "$viewer" 2>/dev/null || break 2
+            case $(ps -o stat= -p "$viewer") in
+            '' | Z*) break 2 ;;
+            esac
         done
         xdotool keyup Escape 2>/dev/null || true
     done
