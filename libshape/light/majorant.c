@@ -189,7 +189,7 @@ static double cell_radius(const majorant_grid *grid, const double m[3][4])
             double v = m[i][0] * h[0] + m[i][1] * h[1] + m[i][2] * h[2];
             sum += v * v;
         }
-        most = fmax(most, sum);
+        most = sum > most ? sum : most; /* no fmax: gcc 12 for arm64 breaks down over it */
     }
     return sqrt(most) * (1 + 1e-6) + 1e-7;
 }

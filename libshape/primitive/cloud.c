@@ -37,11 +37,13 @@ static double list_sagitta(const shape_primitives *list, double planet_radius)
     double most = 0;
     for (size_t i = 0; i < list->sphere_count; i++) {
         double r = (double)list->spheres[i].radius;
-        most = fmax(most, sagitta(planet_radius, r, r));
+        double depth = sagitta(planet_radius, r, r); /* no fmax: gcc 12 for arm64 breaks down over it */
+        most = depth > most ? depth : most;
     }
     for (size_t i = 0; i < list->ellipsoid_count; i++) {
         const shape_ellipsoid *e = &list->ellipsoids[i];
-        most = fmax(most, sagitta(planet_radius, fmax((double)e->a, (double)e->c), (double)e->b));
+        double depth = sagitta(planet_radius, fmax((double)e->a, (double)e->c), (double)e->b);
+        most = depth > most ? depth : most;
     }
     return most;
 }

@@ -64,8 +64,9 @@ static void extents(const point *points, size_t count, double extent[3])
     for (int axis = 0; axis < 3; axis++) {
         double low = INFINITY, high = -INFINITY;
         for (size_t i = 0; i < count; i++) {
-            low = fmin(low, coordinate(&points[i], axis));
-            high = fmax(high, coordinate(&points[i], axis));
+            double at = coordinate(&points[i], axis); /* no fmin: gcc 12 for arm64 breaks down over it */
+            low = at < low ? at : low;
+            high = at > high ? at : high;
         }
         extent[axis] = high - low;
     }
