@@ -112,7 +112,8 @@ static void make_view(generated_scene *s)
 {
     shape_dvec3 low = {0, 0, 0}, high = {1, 1, 1};
     s->light = shape_light_defaults();
-    s->light.sun = shape_sun_direction(range(s, 0, 360), range(s, 5, 80));
+    double height = range(s, 5, 80), azimuth = range(s, 0, 360); /* compilers order arguments as they like */
+    s->light.sun = shape_sun_direction(azimuth, height);
     if (choose(s, 3) == 0) {
         s->light.sky = SHAPE_SKY_CONSTANT;
         for (int c = 0; c < 3; c++)
@@ -125,7 +126,8 @@ static void make_view(generated_scene *s)
     shape_view_frame(&s->view, &s->light, low, high);
     shape_dvec3 away = shape_dvec3_sub(s->view.eye, s->view.target);
     double distance = shape_dvec3_length(away) * spread(s, 0.5, 4);
-    away = shape_sun_direction(range(s, 0, 360), range(s, -15, 60));
+    height = range(s, -15, 60), azimuth = range(s, 0, 360);
+    away = shape_sun_direction(azimuth, height);
     s->view.eye = shape_dvec3_add(s->view.target, shape_dvec3_scale(away, distance));
 }
 
