@@ -262,7 +262,7 @@ typedef struct gl_grids {
     gl_baked *baked; /* of the default method */
 } gl_grids;
 
-/* --- refine.c, first.c: an order carried out; needs no OpenGL --- */
+/* --- order.c, first.c: an order carried out; needs no OpenGL --- */
 
 void gl_grids_drop(gl_grids *grids);
 /* Makes of an order something coarse, of what is wholly missing. */
