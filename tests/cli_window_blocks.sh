@@ -78,8 +78,14 @@ writer=$!
 "$bin/neph-view" slow.neph --save-scene s.json --size 400x240 2>viewer.log &
 viewer=$!
 until_true 60 find_window || fail "no window comes up while a pipe is waited for"
-xdotool key --window "$window" Escape 2>/dev/null || true
-xdotool keyup Escape
+for _ in 1 2 3 4 5 6 7 8 9 10; do # a window that has just come up may not listen yet
+    xdotool key --window "$window" Escape 2>/dev/null || true
+    xdotool keyup Escape 2>/dev/null || true
+    sleep 1
+    case $(ps -o stat= -p "$viewer") in
+    '' | Z*) break ;;
+    esac
+done
 status=0
 wait "$viewer" || status=$?
 viewer=

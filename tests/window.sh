@@ -46,7 +46,7 @@ answers() { xdotool getdisplaygeometry >/dev/null 2>&1; }
 for _ in 1 2 3; do
     : >display
     # shellcheck disable=SC2086
-    Xvfb -displayfd 3 -screen 0 800x600x24 ${screen_options:-} -nolisten tcp 3>display 2>xvfb.log &
+    Xvfb -displayfd 3 -screen 0 800x600x24 ${screen_options:-} -nolisten tcp -noreset 3>display 2>xvfb.log &
     screen=$!
     until_true 20 test -s display || fail "Xvfb did not start: $(cat xvfb.log)"
     DISPLAY=:$(cat display)
