@@ -1,8 +1,9 @@
 /* Light grids as an eye sees them: the white furnace, what a clear sky sends from where, and the mean radiance of a forward
- * scattering ball against paths. */
+ * scattering ball against paths, from outside and from within. */
 #include "volume_sample.h"
 
 #include "light/ordinates.h"
+#include "shape/beam.h"
 #include "shape/lightgrid.h"
 #include "shape/march.h"
 
@@ -17,8 +18,23 @@ static shape_volume *ball(float g, float extinction, shape_set **set)
     return new_volume(*set);
 }
 
-/* Albedo 1 under a sky of 1 all round: whatever is seen has a radiance of 1, from outside and from within. Source iteration
- * comes within 3e-5 (test_lightgrid). */
+/* What of 1 a cell does not send to an eye near it, since it is on the ray. */
+static float left_to_the_ray(const shape_lightgrid *grid, float g, shape_dvec3 eye, size_t k)
+{
+    float share, rest, cells2 = 0;
+    shape_delta_scaling(g, &share, &rest);
+    for (int axis = 0; axis < 3; axis++) {
+        const size_t n = (size_t)grid->size[axis], at = k % n;
+        const double low = (double)(&grid->box.min.x)[axis], high = (double)(&grid->box.max.x)[axis];
+        const double way = (double)at + 0.5 - ((&eye.x)[axis] - low) / (high - low) * (double)n;
+        cells2 += (float)(way * way);
+        k /= n;
+    }
+    return share * shape_beam_straight(cells2);
+}
+
+/* Albedo 1 under a sky of 1 all round: whatever is seen has a radiance of 1, from outside and from within, less what is left to
+ * the ray. Source iteration comes within 3e-5 (test_lightgrid). */
 static void furnace(void **state)
 {
     (void)state;
@@ -51,7 +67,7 @@ static void furnace(void **state)
                  &error);
             for (size_t k = 0; k < cells; k++)
                 for (size_t c = 0; c < 3; c++)
-                    if (!(fabsf(rgba[4 * k + c] - 1) < 2e-4f))
+                    if (!(fabsf(rgba[4 * k + c] - 1 + left_to_the_ray(&grid, g[i], eye, k)) < 2e-4f))
                         fail_msg("g %g, eye %d, cell %zu: %g", (double)g[i], e, k, (double)rgba[4 * k + c]);
         }
         free(rgba);
@@ -198,12 +214,68 @@ static void a_forward_scattering_ball_is_as_bright_as_by_paths(void **state)
     shape_set_destroy(set);
 }
 
+/* Mean radiance of the rays from an eye within a ball whose direction's y is from `low` to `high`. */
+static double look_around(const shape_volume *volume, const shape_light *light, shape_dvec3 eye, double low,
+                          double high)
+{
+    enum { RAYS = 1000 };
+    shape_error error;
+    shape_march_options options = shape_march_defaults();
+    shape_marcher *marcher;
+    shape_march_scratch scratch = {0};
+    shape_random random = shape_random_seed(7, 5);
+    double sum = 0;
+    options.resolution = 12;
+    must(shape_marcher_create(volume, light, eye, &options, &marcher, &error), &error);
+    for (int i = 0; i < RAYS; i++) {
+        double y = low + (high - low) * shape_random_unit(&random), r = sqrt(1 - y * y), rgb[3],
+               turn = 6.28318530718 * shape_random_unit(&random);
+        const shape_dvec3 d = {r * cos(turn), y, r * sin(turn)};
+        must(shape_march_radiance(marcher, eye, d, 0.5, &scratch, rgb, &error), &error);
+        sum += rgb[1] / RAYS;
+    }
+    shape_march_scratch_free(&scratch);
+    shape_marcher_destroy(marcher);
+    return sum;
+}
+/* From within, where cells stand for all directions: a white ball under a clear sky without its sun, over black ground, with
+ * g = 0.85, from near its bottom and from near its top, downwards and upwards, against 100,000 paths (standard error below
+ * 0.4 %). With 12 cells an eighth is allowed; where all light that goes straight on comes from the cells, the first two were
+ * 1.34 and 1.85 times as bright: a veil of sky before the ground. */
+static void an_eye_in_thin_cloud_sees_what_is_there(void **state)
+{
+    (void)state;
+    static const struct {
+        float extinction;
+        double y, low, high, paths;
+    } cases[] = {{0.6f, -2.2, -1, -0.3, 0.0551}, {3, -2.2, -1, -0.3, 0.0670},  {0.6f, 1.9, -1, -0.3, 0.0895},
+                 {3, 1.9, -1, -0.3, 0.1821},     {0.6f, -2.2, 0.3, 1, 0.2560}, {3, -2.2, 0.3, 1, 0.2105},
+                 {3, 1.9, 0.3, 1, 0.2520}};
+    shape_light light = shape_light_defaults();
+    light.sun = shape_sun_direction(0, 40);
+    light.sky = SHAPE_SKY_CLEAR;
+    memset(light.sun_irradiance, 0, sizeof light.sun_irradiance);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        shape_set *set;
+        shape_volume *volume = ball(0.85f, cases[i].extinction, &set);
+        double marched =
+            look_around(volume, &light, shape_dvec3_make(0.7, cases[i].y, 0.4), cases[i].low, cases[i].high);
+        print_message("extinction %g, eye at %g, up to %g: marched %.4f, paths %.4f, ratio %.3f\n",
+                      (double)cases[i].extinction, cases[i].y, cases[i].high, marched, cases[i].paths,
+                      marched / cases[i].paths);
+        assert_true(fabs(marched / cases[i].paths - 1) < 0.125);
+        shape_volume_destroy(volume);
+        shape_set_destroy(set);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(furnace),
         cmocka_unit_test(awkward_clouds_and_eyes_are_finite),
         cmocka_unit_test(a_forward_scattering_ball_is_as_bright_as_by_paths),
+        cmocka_unit_test(an_eye_in_thin_cloud_sees_what_is_there),
         cmocka_unit_test(a_clear_sky_is_bright_near_the_sun),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 /* The sun's first scattering by the delta scaling with the peak cut off (Potter 1970): with x the optical depth to the sun, p the
  * phase function and r = min(p, cap) the source is w (exp(-x) (p - r) + exp(-(1 - w f) x) r). A light grid as it is seen holds
- * the second exponential, and the first is a power of it. Mirrored by shaders/light/beam.glsl. */
+ * the second exponential, and the first is a power of it. And what goes straight on near the eye. Mirrored by
+ * shaders/light/beam.glsl. */
 #include "shape/beam.h"
 
 #include <math.h>
@@ -49,4 +50,15 @@ float shape_beam_source(const shape_beam *beam, float albedo, float seen)
     if (beam->peak > 0)
         source += beam->peak * powf(seen, 1 / fmaxf(1 - albedo * beam->share, 1e-5f));
     return albedo * source;
+}
+
+float shape_beam_straight(float cells2)
+{
+    return 1 / (1 + cells2 / 16);
+}
+
+float shape_beam_kept(const shape_beam *beam, float albedo, float cells2)
+{
+    /* A point's value is interpolated from middles whose squares are larger by a half in the mean: a sixth along each axis. */
+    return 1 - albedo * beam->share * shape_beam_straight(cells2 + 0.5f);
 }

@@ -220,6 +220,9 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
     cloud->seen = calloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2], MARCH_SEEN * sizeof *cloud->seen);
     if (!cloud->seen)
         return shape_error_memory(error);
+    for (int axis = 0; axis < 3; axis++)
+        (&cloud->cells.x)[axis] =
+            (float)n[axis] / ((&cloud->grid.box.max.x)[axis] - (&cloud->grid.box.min.x)[axis]);
     return shape_lightgrid_seen(&cloud->grid, cloud->cloud, &m->light, &m->sky, m->upper, m->lower, eye,
                                 cloud->seen, error);
 }

@@ -134,6 +134,18 @@ static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
             (grid ? rgb[c] : rgb[c] * (double)albedo[c]) + (double)albedo[c] * (double)m->options.ambient[c];
 }
 
+/* What a ray is left with of a cloud's extinction at t; `direction` is its own, in the cloud's frame. */
+static double kept(const march_ray *ray, const march_cloud *cloud, shape_vec3 direction, float t)
+{
+    if (ray->beam_cloud != cloud || !(cloud->cells.x > 0))
+        return 1;
+    const shape_vec3 way =
+        shape_vec3_scale(shape_vec3_make(direction.x * cloud->cells.x, direction.y * cloud->cells.y,
+                                         direction.z * cloud->cells.z),
+                         t);
+    return (double)shape_beam_kept(&ray->beam, cloud->cloud->medium.albedo, shape_vec3_dot(way, way));
+}
+
 /* The square of u at a point of cloud i; above the support's where there is nothing. */
 static float find_u2(const march_ray *ray, size_t i, shape_vec3 p, float t)
 {
@@ -173,7 +185,7 @@ march_sample march_look(march_ray *ray, float t)
                         p, density * (double)cloud->medium.extinction};
         if (at.extinction > 0)
             light_point(ray, &at, rgb);
-        sample.extinction += at.extinction;
+        sample.extinction += at.extinction * kept(ray, &m->clouds[i], local.direction, t);
         for (int c = 0; c < 3; c++)
             sample.added[c] +=
                 (at.extinction > 0 ? at.extinction * rgb[c] : 0) + density * (double)m->options.emission[c];

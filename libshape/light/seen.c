@@ -6,9 +6,10 @@
  * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p, cap)
  * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is, with the rays' share,
  *
- *   E exp(-x) (p - r) + f L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g' flux of what was scattered before)
+ *   E exp(-x) (p - r) + f (1 - h) L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g' flux of what was scattered before)
  *
- * L is the radiance that comes through the grid along the ray (seen_sweep.c). To first order it would be mean + 3 flux, which at
+ * L is the radiance that comes through the grid along the ray (seen_sweep.c), and h is what stays on the ray itself near the eye
+ * (shape_beam_straight; of clouds of several colours nothing, whose extinction is one for all). To first order it would be mean + 3 flux, which at
  * the cloud's surface, where all light goes one way, is a fifth too much: the light there is a step, not a cosine. */
 #include <math.h>
 #include <stdlib.h>
@@ -68,7 +69,9 @@ static void add_sources(const seen_grid *s, const seen_light *l, const seen_cell
     float sun = kept * first_order(cell[1], turned, cell + 4, travel);
     float upper = kept * first_order(cell[2], turned, fluxes + 1, travel);
     float lower = kept * first_order(cell[3], turned, fluxes + 4, travel);
-    float even = s->peak * (s->swept ? 1 - same : 1);
+    const shape_vec3 cells = shape_vec3_make(v.x / e.x, v.y / e.y, v.z / e.z);
+    float straight = s->peak * (s->grid->albedos ? 1 : 1 - shape_beam_straight(shape_vec3_dot(cells, cells)));
+    float even = straight * (s->swept ? 1 - same : 1);
     float scattered = thin > 1e-6f ? fluxes[0] * albedo / thin : 0;
     for (int c = 0; c < 3; c++) {
         float source = l->sun[c] * sun + l->upper[c] * upper + l->lower[c] * lower;
@@ -76,7 +79,7 @@ static void add_sources(const seen_grid *s, const seen_light *l, const seen_cell
         rgba[c] = source + even * (l->sun[c] * cell[1] + l->upper[c] * cell[2] + l->lower[c] * cell[3]);
     }
     (*added)[3] = fluxes[0];
-    rgba[3] = s->swept ? s->peak * same : 0;
+    rgba[3] = s->swept ? straight * same : 0;
 }
 
 static void add_all(const seen_grid *s, const seen_light *l, float *rgba, seen_lanes *added,

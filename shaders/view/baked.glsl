@@ -67,7 +67,7 @@ void load_baked(int c, vec3 direction)
 #ifdef LAW
     law_load(c, cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.rgb, direction);
 #else
-    beam_load(cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.w, direction);
+    beam_load(cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.w, direction, light_slope * vec3(textureSize(LIGHT_GRIDS, 0)));
 #endif
     fetches += 4.0;
 }
@@ -92,6 +92,13 @@ vec3 light_at(float t)
 #endif
     return light;
 }
+
+// What is left of the extinction near the eye.
+#ifdef LAW
+float kept_at(float t) { return 1.0; }
+#else
+float kept_at(float t) { return beam_kept(t); }
+#endif
 
 // How far the empty blocks around a sample reach: the filter may have mixed in a neighbour's number, one less or more.
 float leap(float distance) { return (distance * 255.0 - 2.0) * 4.0 * voxel; }
@@ -123,9 +130,10 @@ void march_loaded(float t0, float t1)
             add_segment(first.x * cloud_extinction, light_at(t + 0.5 * width), width);
             add_segment(second.x * cloud_extinction, light_at(t + 1.5 * width), width);
 #else
-            vec3 source = light_at(t + width);
-            add_segment(first.x * cloud_extinction, source, width);
-            add_segment(second.x * cloud_extinction, source, width);
+            float kept = kept_at(t + width);
+            vec3 source = light_at(t + width) / kept;
+            add_segment(first.x * cloud_extinction * kept, source, width);
+            add_segment(second.x * cloud_extinction * kept, source, width);
 #endif
             t += 2.0 * width;
         } else

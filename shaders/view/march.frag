@@ -66,7 +66,8 @@ vec3 light_at(vec3 p, float t)
     vec3 light = law_light(texture(light_depth, place).r);
 #else
     for (int k = cloud_index == beam_cloud ? 1 : 0; k < 1; k++) { // once a ray and cloud; a loop, as in light/law.glsl
-        beam_load(cloud_texel(cloud_index, 16), cloud_texel(cloud_index, 17), size.w, cloud_texel(cloud_index, 35).w, ray);
+        beam_load(cloud_texel(cloud_index, 16), cloud_texel(cloud_index, 17), size.w, cloud_texel(cloud_index, 35).w, ray,
+                  cloud_direction / (high.xyz - low.xyz) * size.xyz);
         beam_cloud = cloud_index;
         fetches += 3.0;
     }
@@ -78,11 +79,25 @@ vec3 light_at(vec3 p, float t)
     return light;
 }
 
+// What is left of the loaded cloud's extinction near the eye.
+#ifdef LAW
+float kept_at(float t) { return 1.0; }
+#else
+float kept_at(float t) { return beam_kept(t); }
+#endif
+
 void add_segment(float extinction, vec3 source, float width)
 {
     float passed = exp(-extinction * width);
     radiance += transmittance * (1.0 - passed) * source;
     transmittance *= passed;
+}
+
+void add_cloud(float density, vec3 p, float s, float width)
+{
+    vec3 light = light_at(p, s);
+    float kept = kept_at(s);
+    add_segment(density * cloud_extinction * kept, light / kept, width);
 }
 
 int work_end; // where this part stops
@@ -104,7 +119,7 @@ void march_one(int first, int end, float t1)
         fetches += float(cloud_octaves);
         work += cloud_octaves + 2;
         if (density > 0.0)
-            add_segment(density * cloud_extinction, light_at(p, s), width);
+            add_cloud(density, p, s, width);
         reached = width < t1 - reached ? reached + width : t1;
     }
 }
@@ -131,8 +146,8 @@ void mixed_at(int first, int end, float s, bool crowded, out float extinction, o
         fetches += float(cloud_octaves);
         work += cloud_octaves + 2;
         if (density > 0.0) {
-            extinction += density * cloud_extinction;
             source += density * cloud_extinction * light_at(p, s);
+            extinction += density * cloud_extinction * kept_at(s);
         }
         last = c;
     }
@@ -201,7 +216,7 @@ void march_crowd(float last)
         fetches += float(cloud_octaves);
         work += cloud_octaves + 2;
         if (density > 0.0)
-            add_segment(density * cloud_extinction, light_at(p, s), width);
+            add_cloud(density, p, s, width);
         reached = width < until - reached ? reached + width : until;
     }
 #else

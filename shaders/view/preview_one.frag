@@ -26,7 +26,7 @@ void load_tile(vec3 ray)
 #ifdef LAW
     law_load(0, tile_medium, tile_more, tile_droplet, tile_own.rgb, ray);
 #else
-    beam_load(tile_medium, tile_more, tile_droplet, tile_own.w, ray);
+    beam_load(tile_medium, tile_more, tile_droplet, tile_own.w, ray, light_slope * vec3(textureSize(LIGHT_GRIDS, 0)));
 #endif
 }
 

@@ -52,6 +52,7 @@ typedef struct crossing {
     float t0, t1, voxel;                 /* where its box is; metres of the world along the ray */
     float base[3], slope[3];             /* places among its voxels */
     float light_base[3], light_slope[3]; /* and cells */
+    float near;                          /* the square of a metre of the ray, in cells */
     shape_beam beam;
     const float *sun; /* its irradiance */
 } crossing;
@@ -127,6 +128,9 @@ static bool cross(const dense_cloud *c, const float ray[3], crossing *to)
         to->light_base[i] = (o - c->light_low[i]) * c->light_scale[i] - 0.5f;
         to->light_slope[i] = d * c->light_scale[i];
     }
+    to->near = 0;
+    for (int i = 0; i < 3; i++)
+        to->near += to->light_slope[i] * to->light_slope[i];
     to->cloud = c;
     to->t0 = t0;
     to->t1 = t1;
@@ -185,6 +189,12 @@ static void light_at(const crossing *x, float t, float light[3])
         light[k] = seen[k] + beam * x->sun[k];
 }
 
+/* The share of the extinction at t that the ray is left with. */
+static float kept_at(const crossing *x, float t)
+{
+    return shape_beam_kept(&x->beam, x->cloud->medium->albedo, x->near * t * t);
+}
+
 /* How far the empty blocks around t reach. */
 static float leap(const crossing *x, float t)
 {
@@ -215,10 +225,13 @@ static void march_alone(sight *s, const crossing *x, float t0, float t1)
         s->steps += 2;
         s->fetches += 2;
         if (first + second > 0.002f) {
+            const float kept = kept_at(x, t + width);
             light_at(x, t + width, source);
+            for (int k = 0; k < 3; k++)
+                source[k] /= kept;
             s->fetches++;
-            add_segment(s, first * x->cloud->extinction, source, width);
-            add_segment(s, second * x->cloud->extinction, source, width);
+            add_segment(s, first * x->cloud->extinction * kept, source, width);
+            add_segment(s, second * x->cloud->extinction * kept, source, width);
             t += 2 * width;
         } else {
             t += most(2 * width, leap(x, at));
@@ -244,7 +257,7 @@ static void march_mixed(sight *s, const crossing *all, int count, float t0, floa
             if (density > 0.001f) {
                 light_at(&all[i], at, light);
                 s->fetches++;
-                extinction += density * all[i].cloud->extinction;
+                extinction += density * all[i].cloud->extinction * kept_at(&all[i], at);
                 for (int k = 0; k < 3; k++)
                     source[k] += density * all[i].cloud->extinction * light[k];
                 next = width;

@@ -79,8 +79,10 @@ void shape_lightgrid_free(shape_lightgrid *grid);
 
 /* What an eye sees of the grid's light: the source function (radiance per unit of extinction, albedo included; of a grid
  * with albedos left out, so that the caller takes it where it looks) of each cell towards the eye [world], red, green and blue
- * of all but the sun's first scattering, and what shape_beam_source makes that of for a ray, into rgba [cells][4]. Light scattered within the phase function's peak is what arrives at the cell from behind,
- * as followed along the ray through the grid, from the sky on; the rest is the grid's to first order. Near the eye a cell stands for the
+ * of all but the sun's first scattering, and what shape_beam_source makes that of for a ray, into rgba [cells][4]. Light scattered within the phase
+ * function's peak is what arrives at the cell from behind, as followed along the ray through the grid, from the sky on, but for
+ * what stays on the ray near the eye: there a ray's extinction is less (shape_beam_kept; not of a grid with albedos). The rest is
+ * the grid's to first order. Near the eye a cell stands for the
  * directions to all points that are interpolated from it, and gets their mean. sky is shape_sky_make's of that light,
  * sky_upper and sky_lower are shape_sky_mean's of it. Errors: memory. */
 shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
