@@ -34,3 +34,15 @@ const char *shape_version(void)
 {
     return NEPHELE_VERSION;
 }
+
+void shape_error_join(const shape_error *own, shape_status *status, shape_error *error)
+{
+    if (!own->status)
+        return;
+#pragma omp critical(shape_error_join)
+    {
+        *status = own->status;
+        if (error)
+            *error = *own;
+    }
+}

@@ -165,14 +165,7 @@ static shape_status fill_bricks(const bricks_work *work, int threads, shape_erro
             if (!own.status)
                 fill_row(work, row, &list, &own);
         free(list.items);
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
+        shape_error_join(&own, &status, error);
     }
     return status;
 }

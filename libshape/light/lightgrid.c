@@ -88,14 +88,7 @@ static shape_status march_to_sun(const sun_pass *pass, int threads, shape_lightg
             if (!own.status)
                 march_row(pass, grid, i % grid->size[1], i / grid->size[1], &scratch, &own);
         }
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
+        shape_error_join(&own, &status, error);
         shape_candidates_free(&scratch);
     }
     return status;

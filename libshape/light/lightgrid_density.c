@@ -75,14 +75,7 @@ shape_status lightgrid_fill_densities(const shape_volume_cloud *cloud, const sha
                 fill_row(cloud, grid, y, z, &list, &own);
         }
         free(list.items);
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
+        shape_error_join(&own, &status, error);
     }
     return status;
 }

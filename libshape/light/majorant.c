@@ -133,6 +133,13 @@ static shape_status prepare_cloud(majorant_grid *grid, const shape_volume_cloud 
     cloud->to_local[0][3] = offset.x;
     cloud->to_local[1][3] = offset.y;
     cloud->to_local[2][3] = offset.z;
+    shape_dvec3 low, high;
+    shape_frame_box(&source->frame, source->box, &low, &high);
+    for (int a = 0; a < 3; a++) { /* boxes are of single precision */
+        double margin = 1e-5 * ((&high.x)[a] - (&low.x)[a]);
+        cloud->low[a] = (&low.x)[a] - (&grid->origin.x)[a] - margin;
+        cloud->high[a] = (&high.x)[a] - (&grid->origin.x)[a] + margin;
+    }
     majorant_threshold_tables(cloud);
     size_t count = source->list->ellipsoid_count;
     cloud->ellipsoids = malloc((count + 1) * sizeof *cloud->ellipsoids);
@@ -547,6 +554,15 @@ static void size_cells(majorant_grid *grid)
     }
 }
 
+static void find_sparse(majorant_grid *grid)
+{
+    for (size_t i = 0; i < grid->cloud_count; i++) {
+        const majorant_cloud *cloud = &grid->clouds[i];
+        for (int a = 0; a < 3 && cloud->high[a] > cloud->low[a]; a++)
+            grid->sparse = grid->sparse || cloud->high[a] - cloud->low[a] < 4 * grid->cell[a];
+    }
+}
+
 static shape_status add_blocks(majorant_grid *grid, shape_error *error)
 {
     grid->blocks = malloc(sizeof *grid->blocks);
@@ -584,6 +600,7 @@ shape_status majorant_grid_build(majorant_grid *grid, const shape_volume *volume
             grid->n[a] = (grid->n[a] + 1) / 2;
         status = SHAPE_OK;
     }
+    find_sparse(grid);
     return status;
 }
 

@@ -28,7 +28,8 @@ typedef struct majorant_ellipsoid {
 
 typedef struct majorant_cloud {
     const shape_volume_cloud *cloud;
-    double to_local[3][4]; /* from places in the grid (metres from its origin) to the cloud's frame */
+    double to_local[3][4];  /* from places in the grid (metres from its origin) to the cloud's frame */
+    double low[3], high[3]; /* all of it lies between them [m from the grid's origin] */
     majorant_ellipsoid *ellipsoids;
     float extinction;
     float mean; /* of the octaves left out */
@@ -49,6 +50,7 @@ typedef struct majorant_grid {
     uint32_t *entries;
     majorant_cloud *clouds;
     size_t cloud_count;
+    bool sparse; /* some cloud is small beside a cell: clouds are far from each other */
     struct block_grid
         *blocks; /* of a volume that is one voxel grid (light/blocks.h); there are no cells then */
 } majorant_grid;

@@ -98,14 +98,7 @@ shape_status shape_lightgrid_build_2018_with(const shape_volume *volume, size_t 
                         grid->cells + ((size_t)row * (size_t)n + (size_t)x) * SHAPE_LIGHTGRID_VALUES, &own);
             }
         shape_candidates_free(&scratch);
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
+        shape_error_join(&own, &status, error);
     }
     if (status)
         shape_lightgrid_free(grid);

@@ -238,14 +238,7 @@ static shape_status sweep_blocks(const columns_work *work, int rows, int threads
                                            : sweep_rows(work, i * rows, rows, &list, &own));
         }
         free(list.items);
-        if (own.status) {
-#pragma omp critical
-            {
-                status = own.status;
-                if (error)
-                    *error = own;
-            }
-        }
+        shape_error_join(&own, &status, error);
     }
     *evaluated += sum;
     return status;

@@ -195,12 +195,7 @@ static shape_status sweep_all(const sweep_work *work, int threads, shape_error *
             continue;
 #pragma omp atomic write
         failed = true;
-#pragma omp critical
-        {
-            status = own.status;
-            if (error)
-                *error = own;
-        }
+        shape_error_join(&own, &status, error);
     }
     work->sweep->rows = rows;
     return status;

@@ -70,6 +70,37 @@ static inline bool walker_next(walker *w, const majorant_grid *grid)
     return true;
 }
 
+/* Narrows a ray's part within a cell to where that cell's clouds are, which matters where a cell is large beside them. False
+ * where it meets none. */
+static bool clip_to_clouds(const majorant_grid *grid, const majorant_cell *cell, const double p[3],
+                           const double d[3], double *from, double *to)
+{
+    double first = INFINITY, last = -INFINITY;
+    for (uint32_t i = 0; i < cell->count; i++) {
+        const majorant_cloud *cloud = &grid->clouds[grid->groups[cell->first + i].cloud];
+        double near = *from, far = *to;
+        for (int a = 0; a < 3; a++) {
+            if (d[a] == 0) {
+                if (!(p[a] >= cloud->low[a] && p[a] <= cloud->high[a]))
+                    far = -INFINITY;
+                continue;
+            }
+            double low = (cloud->low[a] - p[a]) / d[a], high = (cloud->high[a] - p[a]) / d[a];
+            near = track_max(near, track_min(low, high));
+            far = track_min(far, track_max(low, high));
+        }
+        if (near < far) {
+            first = track_min(first, near);
+            last = track_max(last, far);
+        }
+    }
+    if (!(first < last))
+        return false;
+    *from = first;
+    *to = last;
+    return true;
+}
+
 /* Which cloud a tentative collision at p belongs to, if any: the sum of extinctions up to some cloud passes x, which
  * was drawn from [0, cell->max). The minorants come first, as they cost no look at the density. */
 static bool choose_cloud(const majorant_grid *grid, const majorant_cell *cell, const double p[3], double x,
@@ -110,6 +141,8 @@ static bool collide(const majorant_grid *grid, const double p[3], const double d
     do {
         const majorant_cell *cell = &grid->cells[w.index];
         double exit = walker_exit(&w), max = (double)cell->max;
+        if (grid->sparse && max > 0 && !clip_to_clouds(grid, cell, p, d, &w.t, &exit))
+            continue;
         while (depth < (exit - w.t) * max) {
             w.t += depth / max;
             double at[3] = {p[0] + d[0] * w.t, p[1] + d[1] * w.t, p[2] + d[2] * w.t};
@@ -167,6 +200,8 @@ double track_transmittance(const majorant_grid *grid, const double p[3], const d
         if (!(cell->max > 0))
             continue;
         double exit = walker_exit(&w), rest = (double)cell->max - (double)cell->min;
+        if (grid->sparse && !(cell->min > 0) && !clip_to_clouds(grid, cell, p, d, &w.t, &exit))
+            continue;
         if (cell->min > 0)
             weight *= exp(-track_max(exit - w.t, 0) * (double)cell->min);
         while (depth < (exit - w.t) * rest) {

@@ -220,12 +220,7 @@ static shape_status build_many(const gl_order *order, const shape_sunsweep *swee
         shape_error own = {0};
         if (!cells[i] || !build(order, sweep, (size_t)i, cells[i], swept[i], 1, &light->lit[i], &own))
             continue;
-#pragma omp critical
-        {
-            status = own.status;
-            if (error)
-                *error = own;
-        }
+        shape_error_join(&own, &status, error);
     }
     return status;
 }
@@ -454,12 +449,7 @@ static shape_status compose_all(const gl_light *light, const shape_gl_renderer *
         shape_error own = {0};
         if (!compose_one(light, r, eye, scene->shown[i], light->cells + 4 * first[i], &own))
             continue;
-#pragma omp critical
-        {
-            status = own.status;
-            if (error)
-                *error = own;
-        }
+        shape_error_join(&own, &status, error);
     }
     return status;
 }

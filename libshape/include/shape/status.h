@@ -40,6 +40,10 @@ shape_status shape_error_set(shape_error *error, shape_status status, const char
 /* The usual line for a failed allocation. Returns SHAPE_ERROR_MEMORY. */
 shape_status shape_error_memory(shape_error *error);
 
+/* Of threads that share work, each with an error of its own, zeroed before: joins that into *status and *error (which may be NULL)
+ * of all, the last one stays; nothing where it is SHAPE_OK. Threads may call it at once. */
+void shape_error_join(const shape_error *own, shape_status *status, shape_error *error);
+
 /* clang's analyser does not look into the other file, and would take either for a success. */
 #ifdef __clang_analyzer__
 #define shape_error_set(error, status, ...) (shape_error_set(error, status, __VA_ARGS__), (status))
