@@ -7,6 +7,8 @@
 
 void *_Znwm(size_t size);
 void *_Znam(size_t size);
+void *_ZnwmRKSt9nothrow_t(size_t size, const void *nothrow);
+void *_ZnamRKSt9nothrow_t(size_t size, const void *nothrow);
 void _ZdlPv(void *block);
 void _ZdaPv(void *block);
 void _ZdlPvm(void *block, size_t size);
@@ -24,6 +26,17 @@ void *_Znwm(size_t size)
 void *_Znam(size_t size)
 {
     return _Znwm(size);
+}
+
+void *_ZnwmRKSt9nothrow_t(size_t size, const void *nothrow)
+{
+    (void)nothrow;
+    return malloc(size ? size : 1);
+}
+
+void *_ZnamRKSt9nothrow_t(size_t size, const void *nothrow)
+{
+    return _ZnwmRKSt9nothrow_t(size, nothrow);
 }
 
 void _ZdlPv(void *block)
