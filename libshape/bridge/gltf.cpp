@@ -210,7 +210,7 @@ void load(tinygltf::Model &model, Folder &folder, const unsigned char *bytes, si
         drop_needless(problem);
     if (good && problem.empty())
         return;
-    if (problem.find("std::bad_alloc") != std::string::npos) // what its JSON library threw, as a text
+    if (first_line(problem) == "std::bad_alloc") // what its JSON library threw, as a text
         throw std::bad_alloc();
     const char *compression = compression_in(json);
     if (compression)
