@@ -75,7 +75,7 @@ typedef shape_status (*work)(shape_error *error);
 
 /* Fails the first allocation of the work, then the second, and so on, until it needs no more; at least so many must be
  * seen. `spared` of them the work can do without: memory given back. */
-static void fail_each(work run, long at_least, int spared)
+static inline void fail_each(work run, long at_least, int spared)
 {
     long before = live, failures = 0;
     for (;; failures++) {

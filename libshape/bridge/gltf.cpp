@@ -130,8 +130,6 @@ std::string glb_text(const unsigned char *bytes, size_t size)
 {
     if (size < 20)
         throw Problem("is too short for a GLB file (it is cut off)");
-    if (std::memcmp(bytes, "glTF", 4) != 0)
-        throw Problem("does not begin with glTF, so it is not a GLB file");
     if (word_at(bytes + 4) != 2)
         throw Problem("is glTF version " + std::to_string(word_at(bytes + 4)) + " (export it as 2.0)");
     size_t length = word_at(bytes + 8), json = word_at(bytes + 12);
@@ -184,6 +182,14 @@ const char *compression_in(const std::string &json)
     return nullptr;
 }
 
+// tinygltf 2.7 misses a skin's bind matrices aloud, and reads on; glTF 2.0 (section 5.28) lets them be left out.
+void drop_needless(std::string &problem)
+{
+    static const std::string needless = "'inverseBindMatrices' property is missing in Skin.\n";
+    for (size_t found; (found = problem.find(needless)) != std::string::npos;)
+        problem.erase(found, needless.size());
+}
+
 void load(tinygltf::Model &model, Folder &folder, const unsigned char *bytes, size_t size)
 {
     if (size > UINT_MAX)
@@ -200,8 +206,12 @@ void load(tinygltf::Model &model, Folder &folder, const unsigned char *bytes, si
     bool good = binary
                     ? loader.LoadBinaryFromMemory(&model, &problem, &warning, bytes, unsigned(size), "")
                     : loader.LoadASCIIFromString(&model, &problem, &warning, json.data(), unsigned(size), "");
+    if (good)
+        drop_needless(problem);
     if (good && problem.empty())
         return;
+    if (first_line(problem) == "std::bad_alloc") // what its JSON library threw, as a text
+        throw std::bad_alloc();
     const char *compression = compression_in(json);
     if (compression)
         throw Problem("is compressed by " + std::string(compression) + " (export it without compression)");

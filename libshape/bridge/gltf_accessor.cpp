@@ -176,8 +176,6 @@ std::vector<uint32_t> read_indices(const tinygltf::Model &model, int index)
         (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
          type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
         throw Problem("its indices are not whole numbers of 8, 16 or 32 bits");
-    if (accessor.bufferView < 0)
-        throw Problem("its indices have no data (export it without compression)");
     if (accessor.sparse.isSparse)
         throw Problem("its indices are a sparse accessor (export it with plain indices)");
     size_t size = component_size(type),

@@ -197,6 +197,14 @@ bool frame_is_sane(const shape_frame &frame)
     return shape_frame_invert(&frame, &inverse);
 }
 
+// A bool that came through the pipe, and may hold what no bool does.
+bool is_true(const bool &sent)
+{
+    unsigned char byte;
+    std::memcpy(&byte, &sent, 1);
+    return byte == 1;
+}
+
 // Even the reader is not trusted further than necessary: its memory may be damaged.
 bool is_sane(const shape_grid &g, size_t max_bytes)
 {
@@ -227,7 +235,7 @@ bool values_are_sane(const shape_grid &grid)
 // A channel of the colour has the points of its density.
 bool is_channel(const Message &m, int c, size_t max_bytes)
 {
-    return is_sane(m.colour[c], max_bytes) && !m.colour[c].coloured &&
+    return is_sane(m.colour[c], max_bytes) && !is_true(m.colour[c].coloured) &&
            !std::memcmp(m.colour[c].points, m.grid.points, sizeof m.grid.points);
 }
 
@@ -243,6 +251,8 @@ bool receive_grid(int from, const shape_grid &head, shape_grid *&made)
     grid->filled = nullptr;
     for (int c = 0; c < 3; c++)
         grid->colour[c] = nullptr;
+    grid->coloured = is_true(head.coloured);
+    grid->gain = 1;
     grid->users = 1;
     size_t cells = cells_of(*grid), bricks = grid->brick_count;
     grid->table = static_cast<uint32_t *>(std::malloc(cells * sizeof *grid->table));
@@ -290,12 +300,10 @@ shape_status collect(const char *path, int from, size_t max_bytes, shape_vdb_con
         shape_grid_release(grid);
         return damaged(path, error);
     }
-    unsigned char level_set; // which may hold what no bool does
-    std::memcpy(&level_set, &message.contents.level_set, 1);
     std::memcpy(contents->name, message.contents.name, SHAPE_NAME_MAX);
     contents->name[SHAPE_NAME_MAX] = 0;
     contents->frame = message.contents.frame;
-    contents->level_set = level_set == 1;
+    contents->level_set = is_true(message.contents.level_set);
     contents->grid = grid;
     return SHAPE_OK;
 }

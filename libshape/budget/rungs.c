@@ -300,7 +300,7 @@ shape_status chooser_measure(chooser *c, shape_error *error)
     int step = 0;
     while (step < c->step_count - 1 && c->step_error[step] > 0.5 * c->allowed)
         step += 2;
-    probe_picture *lit = pictures + STEP_RUNGS + 1;
+    probe_picture *lit = pictures ? pictures + STEP_RUNGS + 1 : NULL;
     if (!status)
         status = try_octaves(c, STEPS_GRID, step, &pictures[step], &pictures[STEP_RUNGS], error);
     if (!status)
