@@ -43,6 +43,19 @@ static _Noreturn void end_output(void)
     exit(CLI_DONE);
 }
 
+/* Whether a command line has anything but options. popt, where it has no memory for that, says that there is nothing. */
+static bool has_rest(const char *name, int argc, char **argv, const struct poptOption *table)
+{
+    poptContext context = poptGetContext(name, argc, (const char **)argv, table, 0);
+    if (!context)
+        cli_fail("not enough memory");
+    while (poptGetNextOpt(context) > 0)
+        free(poptGetOptArg(context));
+    bool has = poptPeekArg(context);
+    poptFreeContext(context);
+    return has;
+}
+
 void cli_parse(const cli_program *program, int argc, char **argv, cli_common *common)
 {
     cli_set_program(program->name);
@@ -118,6 +131,8 @@ void cli_parse(const cli_program *program, int argc, char **argv, cli_common *co
         end_output();
     }
     const char **rest = poptGetArgs(context);
+    if (!rest && has_rest(program->name, argc, argv, table))
+        cli_fail("not enough memory");
     while (rest && rest[common->argument_count])
         common->argument_count++;
     common->arguments = calloc((size_t)common->argument_count + 1, sizeof *common->arguments);
