@@ -89,7 +89,7 @@ static void draw_field(scene *s, shape_field *field, double unit)
 
 static void draw_medium(scene *s, shape_medium *medium, double length)
 {
-    medium->extinction = (float)(scene_spread(s, 1e-3, 1e4) / length);
+    medium->extinction = (float)fmin(scene_spread(s, 1e-3, 1e4) / length, 1e9);
     if (scene_choose(s, 20) == 0)
         medium->extinction = 0;
     medium->albedo = (float)scene_share(s);
