@@ -141,7 +141,7 @@ shape_status bake_distances(shape_baked *baked, const uint8_t *made, uint8_t *di
 {
     int n[3];
     count_blocks(baked, n);
-    uint8_t *distance = malloc((size_t)n[0] * (size_t)n[1] * (size_t)n[2]);
+    uint8_t *distance = calloc((size_t)n[0] * (size_t)n[1], (size_t)n[2]);
     if (!distance)
         return shape_error_memory(error);
     if (find_matter(baked, n, made, distance)) {

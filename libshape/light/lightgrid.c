@@ -295,7 +295,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     const int channel = options->channel,
               finest = options->scattering_resolution > 0 ? options->scattering_resolution : INT_MAX;
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
-    float *extinction = malloc(cells * sizeof *extinction), *beam = malloc(cells * sizeof *beam);
+    float *extinction = calloc(cells, sizeof *extinction), *beam = malloc(cells * sizeof *beam);
     float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments), *shares = NULL;
     float above[ORDINATES_DIRECTIONS];
     const shape_sky sky = shape_sky_make(light);

@@ -124,7 +124,7 @@ static void print_head(void)
            "not be true) or ours outside; the page is printed from the same rows:\n\n"
            "    cmake --preset release && cmake --build build/release\n"
            "    build/release/tests/stability/test_stability --markdown > docs/stability.md\n"
-           "    build/release/tests/stability/sweep 1600 >> docs/stability.md\n");
+           "    build/release/tests/stability/sweep 100000 >> docs/stability.md\n");
 }
 
 static void print_sweep_head(void)
@@ -150,7 +150,10 @@ static void print_sweep_head(void)
            "up to 300. Its flux is\n"
            "told, not checked. Metaballs and details are given few primitives, for the time's sake; the "
            "viewer's pictures are not in the\n"
-           "sweep. CTest runs 200 pictures. Last run:\n\n");
+           "sweep. Paths are not traced where the optical depth along a cloud's longest side would be above "
+           "10,000 at its "
+           "densest,\nand have 30 collisions at most where it would be above 1,000. CTest runs 200 pictures. "
+           "Last run:\n\n");
 }
 
 static int print_page(void)

@@ -68,7 +68,8 @@ shape_status shape_mesh_decode(shape_mesh_format format, const char *name, const
 
 /* [shape_gltf] The same for glTF and GLB 2.0: all meshes of the scene, placed by their nodes; skins in the pose that
  * the nodes hold, no animation played, no morph target applied. Files that a .gltf names are read from `folder` (""
- * for the current one) or below it and nowhere else, each at most 1 GiB. Images are not read. */
+ * for the current one) or below it and nowhere else, each at most 1 GiB. Images are not read. One at a time: while it runs, the
+ * process's std::terminate is its own, since tinygltf without memory may end there (a line and exit code 1). */
 shape_status shape_gltf_decode(const char *name, const char *folder, const void *bytes, size_t size,
                                shape_mesh **mesh, shape_error *error);
 
