@@ -4,6 +4,8 @@
 
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,12 +17,12 @@ enum { FIRST_FRAMES = 5 };
 static double read_kept(const window_pulse *pulse)
 {
     char text[96];
-    double kept = 0;
     ssize_t size = pulse->schedule < 0 ? -1 : pread(pulse->schedule, text, sizeof text - 1, 0);
     if (size <= 0)
         return 0;
     text[size] = 0;
-    return sscanf(text, "%*s %lf", &kept) == 1 ? 1e-6 * kept : 0;
+    const char *second = strchr(text, ' ');
+    return second ? 1e-6 * strtod(second, NULL) : 0;
 }
 
 static window_moment now(const window_pulse *pulse)

@@ -188,7 +188,7 @@ static bool add(comparison *c, const unsigned char *bytes, bool sphere)
     return true;
 }
 
-static shape_status compare(comparison *c, span a, span b, bool sphere)
+static shape_status compare(comparison *both, span a, span b, bool sphere)
 {
     const size_t size = sphere ? sizeof(shape_sphere) : sizeof(shape_ellipsoid);
     table t = {0};
@@ -196,21 +196,21 @@ static shape_status compare(comparison *c, span a, span b, bool sphere)
     if (!a.count && !b.count)
         return SHAPE_OK;
     shape_error own = {0};
-    shape_error *error = c->error;
-    c->error = &own;
+    comparison c = *both;
+    c.error = &own;
     table_make(&a, size, b.count, &t, &own);
     for (size_t i = 0; i < b.count && !own.status && t.steps; i++)
-        if (!table_take(&t, &a, size, item(&b, size, i)) && !add(c, item(&b, size, i), sphere))
+        if (!table_take(&t, &a, size, item(&b, size, i)) && !add(&c, item(&b, size, i), sphere))
             break;
-    for (size_t i = 0; i < a.count && !own.status && !c->change->all; i++)
-        if (!t.taken[i] && !add(c, item(&a, size, i), sphere))
+    for (size_t i = 0; i < a.count && !own.status && !c.change->all; i++)
+        if (!t.taken[i] && !add(&c, item(&a, size, i), sphere))
             break;
     if (!own.status && !t.steps)
-        c->change->all = true; /* too many alike to tell which is which */
+        c.change->all = true; /* too many alike to tell which is which */
     table_free(&t);
-    c->error = error;
-    if (own.status && error)
-        *error = own;
+    both->capacity = c.capacity;
+    if (own.status && both->error)
+        *both->error = own;
     return own.status;
 }
 
