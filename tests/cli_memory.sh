@@ -46,6 +46,10 @@ check() {
         left=$(ls out | grep -Evx 'first[.].*|sums' || true)
         [ -z "$left" ] || fail "$1: failed, and left $left"
         ;;
+    127) # glibc's loader, which brings OpenVDB late, ends a program so and cannot be asked not to
+        grep -qxE 'out of memory|cannot allocate memory for thread-local data: ABORT' err || fail "$1: exit code 127"
+        [ -z "$(ls out | grep -Evx 'first[.].*|sums')" ] || fail "$1: the loader failed, and a file was left"
+        ;;
     *) fail "$1: exit code $code" ;;
     esac
 }
@@ -73,7 +77,7 @@ each() {
         code=0
         NEPHELE_FAIL=$n LD_PRELOAD=$tmp/failing.so timeout 60 "$@" > /dev/null 2> err || code=$?
         check "$name, allocation $n of $count"
-        failures=$((failures + code))
+        failures=$((failures + (code > 0)))
         n=$((n + step))
     done
     [ "$failures" -gt 0 ] || fail "$name: no allocation of $count made it fail"
