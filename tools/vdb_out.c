@@ -205,9 +205,9 @@ static void write_grids(const cli_common *common, const shape_set *set, const sh
     cli_check(shape_vdb_encode(file, format == VDB_FORMAT_NVDB ? SHAPE_VDB_NANOVDB : SHAPE_VDB_OPENVDB,
                                &bytes, &size, &error),
               &error);
+    shape_vdb_destroy(file);
     cli_write(common, bytes, size, true);
     free(bytes);
-    shape_vdb_destroy(file);
     if (p->wanted[1])
         shape_lightvoxels_free(&light);
 }

@@ -1,14 +1,13 @@
 // The bridge to tinygltf: glTF and GLB 2.0 to a mesh. tinygltf parses; this file decides what may be read, walks the
 // scene's nodes and puts triangles together. Everything is checked before it is used, since the file is not trusted.
 #include "gltf_private.hpp"
+#include "orderly_end.hpp"
 
 #include "shape/file.h"
 
 #include <climits>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <new>
 
 using shape_gltf::at;
@@ -425,39 +424,12 @@ shape_mesh *read(const char *folder_path, const unsigned char *bytes, size_t siz
     return mesh;
 }
 
-// tinygltf's JSON asks for memory where nothing may be thrown (moves, destructors), and C++ then ends the program by abort(). While a
-// file is read that end is a line and exit code 1; any other is as it was.
-class OrderlyEnd
-{
-    static inline std::terminate_handler before = nullptr;
-
-    [[noreturn]] static void end()
-    {
-        try {
-            if (std::current_exception())
-                throw;
-        } catch (const std::bad_alloc &) {
-            std::fputs("glTF: not enough memory (make the mesh smaller)\n", stderr);
-            std::_Exit(1);
-        } catch (...) {
-        }
-        before();
-        std::abort();
-    }
-
-  public:
-    OrderlyEnd() { before = std::set_terminate(end); }
-    ~OrderlyEnd() { std::set_terminate(before); }
-    OrderlyEnd(const OrderlyEnd &) = delete;
-    OrderlyEnd &operator=(const OrderlyEnd &) = delete;
-};
-
 } // namespace
 
 extern "C" shape_status shape_gltf_decode(const char *name, const char *folder, const void *bytes,
                                           size_t size, shape_mesh **mesh, shape_error *error)
 {
-    const OrderlyEnd guard;
+    const OrderlyEnd guard("glTF: not enough memory (make the mesh smaller)\n");
     try {
         if (!size)
             return shape_error_set(error, SHAPE_ERROR_FORMAT, "%s: the file is empty", name);

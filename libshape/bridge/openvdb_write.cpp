@@ -1,6 +1,7 @@
 // The bridge to OpenVDB, writing: grids are assembled from leaves that other threads have filled, and written as a file in
 // memory (Museth 2013; openvdb/io/Archive.h).
 #include "openvdb_private.hpp"
+#include "orderly_end.hpp"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/tools/Count.h>
@@ -189,6 +190,7 @@ shape_vdb *shape_vdb_create(void)
 
 void shape_vdb_destroy(shape_vdb *vdb)
 {
+    const OrderlyEnd guard("OpenVDB: not enough memory\n"); // its trees ask for some to be taken apart
     delete vdb;
 }
 
