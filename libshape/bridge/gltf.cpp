@@ -429,7 +429,7 @@ shape_mesh *read(const char *folder_path, const unsigned char *bytes, size_t siz
 extern "C" shape_status shape_gltf_decode(const char *name, const char *folder, const void *bytes,
                                           size_t size, shape_mesh **mesh, shape_error *error)
 {
-    const OrderlyEnd guard("glTF: not enough memory (make the mesh smaller)\n");
+    const OrderlyEnd guard("to read glTF (make the mesh smaller)");
     try {
         if (!size)
             return shape_error_set(error, SHAPE_ERROR_FORMAT, "%s: the file is empty", name);

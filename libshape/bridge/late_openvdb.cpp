@@ -1,33 +1,23 @@
 // What programs seldom need of OpenVDB: loading it takes longer (45 ms) than a program may take until it shows something, so
 // it is loaded with the first call, as a module that holds the real functions (openvdb_module.c).
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <exception>
 
 #include <dlfcn.h>
-#include <errno.h>
 
+#include "orderly_end.hpp"
 #include "shape/mesh.h"
 #include "shape/vdb_read.h"
 
 namespace
 {
 
-// The libraries' own beginnings ask for memory, and what they throw cannot be caught through the loader.
-[[noreturn]] void end_loading()
-{
-    std::fprintf(stderr, "%s: not enough memory to load OpenVDB\n", program_invocation_short_name);
-    std::_Exit(1);
-}
-
 // A function of the module; null where that is not there, and *why says so.
 template <typename Function> Function find(const char *name, const char **why)
 {
-    std::terminate_handler before = std::set_terminate(end_loading);
+    // The libraries' own beginnings ask for memory, and what they throw cannot be caught through the loader.
+    const OrderlyEnd guard("to load OpenVDB");
     // Stays loaded: OpenVDB registers its types, once. Found by the program's run path.
     void *module = dlopen(NEPHELE_OPENVDB_MODULE, RTLD_NOW | RTLD_LOCAL);
-    std::set_terminate(before);
     void *symbol = module ? dlsym(module, name) : nullptr;
     if (!symbol)
         *why = dlerror();

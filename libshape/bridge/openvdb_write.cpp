@@ -190,7 +190,8 @@ shape_vdb *shape_vdb_create(void)
 
 void shape_vdb_destroy(shape_vdb *vdb)
 {
-    const OrderlyEnd guard("OpenVDB: not enough memory\n"); // its trees ask for some to be taken apart
+    const OrderlyEnd guard(
+        "for OpenVDB (make the volume smaller)"); // its trees ask for some to be taken apart
     delete vdb;
 }
 

@@ -59,6 +59,8 @@ typedef struct majorant_grid {
 shape_status majorant_grid_build(majorant_grid *grid, const shape_volume *volume, shape_error *error);
 void majorant_grid_free(majorant_grid *grid);
 
+/* --- the density at a point (majorant_density.c) --- */
+
 /* The density of a group's cloud at p (metres from the grid's origin, inside the group's cell). With floor 0 exactly;
  * with a floor above 0 some number above floor where the density is above it, some number not above floor where it is
  * not, which saves octaves. */

@@ -42,6 +42,9 @@ void law_load(int c, vec4 medium, vec4 more, float droplet, vec3 glow, vec3 ray)
     law_cloud = c;
 }
 
+// As of light/beam.glsl: by a law, what is scattered straight on is lost to the ray.
+float beam_kept(float t) { return 1.0; }
+
 // Source function (radiance per unit of extinction, albedo included) towards the eye.
 vec3 law_light(float depth)
 {

@@ -93,13 +93,6 @@ vec3 light_at(float t)
     return light;
 }
 
-// What is left of the extinction near the eye.
-#ifdef LAW
-float kept_at(float t) { return 1.0; }
-#else
-float kept_at(float t) { return beam_kept(t); }
-#endif
-
 // How far the empty blocks around a sample reach: the filter may have mixed in a neighbour's number, one less or more.
 float leap(float distance) { return (distance * 255.0 - 2.0) * 4.0 * voxel; }
 
@@ -130,7 +123,7 @@ void march_loaded(float t0, float t1)
             add_segment(first.x * cloud_extinction, light_at(t + 0.5 * width), width);
             add_segment(second.x * cloud_extinction, light_at(t + 1.5 * width), width);
 #else
-            float kept = kept_at(t + width);
+            float kept = beam_kept(t + width);
             vec3 source = light_at(t + width) / kept;
             add_segment(first.x * cloud_extinction * kept, source, width);
             add_segment(second.x * cloud_extinction * kept, source, width);

@@ -79,13 +79,6 @@ vec3 light_at(vec3 p, float t)
     return light;
 }
 
-// What is left of the loaded cloud's extinction near the eye.
-#ifdef LAW
-float kept_at(float t) { return 1.0; }
-#else
-float kept_at(float t) { return beam_kept(t); }
-#endif
-
 void add_segment(float extinction, vec3 source, float width)
 {
     float passed = exp(-extinction * width);
@@ -96,7 +89,7 @@ void add_segment(float extinction, vec3 source, float width)
 void add_cloud(float density, vec3 p, float s, float width)
 {
     vec3 light = light_at(p, s);
-    float kept = kept_at(s);
+    float kept = beam_kept(s);
     add_segment(density * cloud_extinction * kept, light / kept, width);
 }
 
@@ -147,7 +140,7 @@ void mixed_at(int first, int end, float s, bool crowded, out float extinction, o
         work += cloud_octaves + 2;
         if (density > 0.0) {
             source += density * cloud_extinction * light_at(p, s);
-            extinction += density * cloud_extinction * kept_at(s);
+            extinction += density * cloud_extinction * beam_kept(s);
         }
         last = c;
     }

@@ -30,7 +30,7 @@ void march_mixed(int first, int end, float t0, float t1)
             load_baked(int(candidate[i].w), ray);
             vec2 here = baked_at(s);
             if (here.x > 0.001) {
-                extinction += here.x * cloud_extinction * kept_at(s);
+                extinction += here.x * cloud_extinction * beam_kept(s);
                 source += here.x * cloud_extinction * light_at(s);
                 next = width;
             } else
@@ -60,7 +60,7 @@ void march_crowd(float t0, float t1)
             if (any(lessThan(p, cloud_min)) || any(greaterThan(p, cloud_max)))
                 continue;
             float density = baked_at(s).x;
-            extinction += density * cloud_extinction * kept_at(s);
+            extinction += density * cloud_extinction * beam_kept(s);
             source += density * cloud_extinction * light_at(s);
         }
         steps += 1.0;

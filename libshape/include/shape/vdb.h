@@ -30,7 +30,8 @@ typedef struct shape_vdb_options {
 
 /* The caller destroys it. NULL where memory is out. */
 shape_vdb *shape_vdb_create(void);
-void shape_vdb_destroy(shape_vdb *vdb); /* NULL is allowed */
+void shape_vdb_destroy(
+    shape_vdb *vdb); /* NULL is allowed; sets std::terminate while it runs, as shape_gltf_decode */
 
 /* *grid lives as long as the file. */
 shape_status shape_vdb_add(shape_vdb *vdb, const shape_vdb_options *options, shape_vdb_grid **grid,
