@@ -1,7 +1,15 @@
-/* The sun's first scattering by the delta scaling with the peak cut off (Potter 1970): with x the optical depth to the sun, p the
- * phase function and r = min(p, cap) the source is w (exp(-x) (p - r) + exp(-(1 - w f) x) r). A light grid as it is seen holds
- * the second exponential, and the first is a power of it. And what goes straight on near the eye. Mirrored by
- * shaders/light/beam.glsl. */
+/* The sun's light that was scattered only within the phase function's peak, and what of it is scattered on towards the eye: the
+ * delta scaling with the peak cut off (Potter 1970), and the peak spread round the sun by as many turns as there were (Goudsmit
+ * and Saunderson 1940). With x the optical depth to the sun, p the phase function, r = min(p, cap) and w f the share of
+ * extinction that is scattering within the peak, the source is
+ *
+ *   w (exp(-(1 - w f) x) r + exp(-x) (p - r) + (exp(-(1 - w f) x) - exp(-x)) f V)
+ *
+ * The first is all light that has not left the peak, the second what had not been scattered yet, the third what had. n scatterings on
+ * the way are distributed as Poisson has it with mean w f x; V has the mean cosine m of the peak, to the power of 1 and n, the
+ * mean of their number where it is not 0: that of von Mises and Fisher, k exp(k (cos - 1)) / (2 pi), with k = 1/2 - 1 / ((1 + n) log m), which is
+ * 1 / (1 - m^(1 + n)) but for terms of the first order. A light grid as it is seen holds exp(-(1 - w f) x), and exp(-x) is a power of it. And
+ * what goes straight on near the eye. Mirrored by shaders/light/beam.glsl. */
 #include "shape/beam.h"
 
 #include <math.h>
@@ -9,16 +17,18 @@
 #include "shape/lightgrid.h"
 #include "shape/phase.h"
 
-float shape_beam_cap(const shape_medium *medium)
+shape_beam_peak shape_beam_peak_make(const shape_medium *medium)
 {
     enum { POINTS = 256, HALVINGS = 30 };
-    float value[POINTS], weight[POINTS], sum = 0, low = 0, high = 0, share, rest;
-    shape_delta_scaling(shape_phase_mean_cosine(medium), &share, &rest);
+    shape_beam_peak peak = {INFINITY, 1, shape_phase_mean_cosine(medium)};
+    float value[POINTS], cosine[POINTS], weight[POINTS], sum = 0, low = 0, high = 0, share, rest;
+    shape_delta_scaling(peak.rest, &share, &rest);
     if (share <= 0)
-        return INFINITY;
+        return peak;
     for (int i = 0; i < POINTS; i++) {
-        float u = ((float)i + 0.5f) / POINTS; /* cos = 1 - 2 u^4: most of them in the peak */
-        value[i] = shape_phase(medium, 1 - 2 * u * u * u * u);
+        float u = ((float)i + 0.5f) / POINTS; /* most of them in the peak */
+        cosine[i] = 1 - 2 * u * u * u * u;
+        value[i] = shape_phase(medium, cosine[i]);
         weight[i] = u * u * u;
         sum += value[i] * weight[i];
         high = fmaxf(high, value[i]);
@@ -32,23 +42,38 @@ float shape_beam_cap(const shape_medium *medium)
         else
             high = middle;
     }
-    return high;
+    float above = 0, ahead = 0, left = 0, blunt = 0;
+    for (int i = 0; i < POINTS; i++) {
+        above += fmaxf(value[i] - high, 0) * weight[i];
+        ahead += fmaxf(value[i] - high, 0) * weight[i] * cosine[i];
+        left += fminf(value[i], high) * weight[i];
+        blunt += fminf(value[i], high) * weight[i] * cosine[i];
+    }
+    peak.cap = high;
+    peak.ahead = above > 0 ? fmaxf(ahead / above, 0) : 1;
+    peak.rest = left > 0 ? blunt / left : rest;
+    return peak;
 }
 
-shape_beam shape_beam_make(const shape_medium *medium, float cap, float cosine)
+shape_beam shape_beam_make(const shape_medium *medium, const shape_beam_peak *peak, float cosine)
 {
     float rest, phase = shape_phase(medium, cosine);
-    shape_beam beam = {.blunt = fminf(phase, cap)};
+    shape_beam beam = {.blunt = fminf(phase, peak->cap), .aside = -logf(peak->ahead), .cosine = cosine};
     beam.peak = phase - beam.blunt;
     shape_delta_scaling(shape_phase_mean_cosine(medium), &beam.share, &rest);
     return beam;
 }
 
-float shape_beam_source(const shape_beam *beam, float albedo, float seen)
+float shape_beam_source(const shape_beam *beam, float albedo, float seen, float straight)
 {
     float source = beam->blunt * seen;
-    if (beam->peak > 0)
-        source += beam->peak * powf(seen, 1 / fmaxf(1 - albedo * beam->share, 1e-5f));
+    if (beam->share > 0 && seen > 0) {
+        const float inside = albedo * beam->share, turns = -logf(seen) * inside / fmaxf(1 - inside, 1e-5f);
+        const float bare = expf(-turns); /* of what is seen, what has not been scattered */
+        const float narrow = 0.5f + (1 - bare) / (beam->aside * (1 - bare + turns) + 1e-6f);
+        const float spread = narrow * 0.159154943f * expf(narrow * (beam->cosine - 1));
+        source += seen * (bare * beam->peak + (1 - bare) * (1 - straight) * beam->share * spread);
+    }
     return albedo * source;
 }
 

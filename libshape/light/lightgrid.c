@@ -11,6 +11,7 @@
 #include "light/lightgrid_density.h"
 #include "light/lightgrid_layout.h"
 #include "light/ordinates.h"
+#include "light/skyspread.h"
 #include "light/sunsweep.h"
 #include "shape/phase.h"
 
@@ -297,12 +298,12 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
     size_t cells = (size_t)grid->size[0] * (size_t)grid->size[1] * (size_t)grid->size[2];
     float *extinction = calloc(cells, sizeof *extinction), *beam = malloc(cells * sizeof *beam);
     float *moments = calloc(cells * ORDINATES_CELL, sizeof *moments), *shares = NULL;
-    float above[ORDINATES_DIRECTIONS];
+    float directions[ORDINATES_DIRECTIONS];
     const shape_sky sky = shape_sky_make(light);
     grid->fluxes = malloc(cells * SHAPE_LIGHTGRID_FLUXES * sizeof *grid->fluxes);
     shape_status status =
         extinction && beam && moments && grid->fluxes ? SHAPE_OK : shape_error_memory(error);
-    ordinates_sky_shares(&sky, cloud, above);
+    ordinates_sky_shares(&sky, cloud, directions);
     if (!status && channel >= 0 && shape_cloud_is_coloured(cloud)) {
         grid->albedos = malloc(cells * sizeof *grid->albedos);
         shares = malloc(cells * sizeof *shares);
@@ -328,7 +329,7 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
                                .g = rest,
                                .sun_travel = shape_vec3_scale(to_cloud(cloud, light->sun), -1),
                                .up = to_cloud(cloud, shape_dvec3_make(0, 1, 0)),
-                               .above = above,
+                               .sky = directions,
                                .moments = moments,
                                .stop = options->stop,
                                .visits = &grid->visits};
@@ -340,6 +341,8 @@ static shape_status scatter(const shape_volume_cloud *cloud, const shape_light *
             p.cell[axis] = (float)column * ((&grid->box.max.x)[axis] - (&grid->box.min.x)[axis]) /
                            (float)grid->size[axis];
         }
+        if (!status && peak > 0 && sky.kind == SHAPE_SKY_CLEAR)
+            status = skyspread_make(&sky, &cloud->medium, threads, &grid->sky, error);
         if (!status)
             status = solve_levels(&p, finest, threads, error);
         if (!status)
@@ -470,5 +473,6 @@ void shape_lightgrid_free(shape_lightgrid *grid)
     free(grid->albedos);
     free(grid->densities);
     free(grid->fluxes);
+    free(grid->sky);
     memset(grid, 0, sizeof *grid);
 }

@@ -201,7 +201,7 @@ static shape_status light_cloud(shape_marcher *m, size_t i, shape_dvec3 eye, sha
 {
     march_cloud *cloud = &m->clouds[i];
     cloud->cloud = &m->volume->clouds[i];
-    cloud->cap = shape_beam_cap(&cloud->cloud->medium);
+    cloud->peak = shape_beam_peak_make(&cloud->cloud->medium);
     cloud->hidden = m->options.resolutions && m->options.resolutions[i] == 0;
     shape_dvec3 sun = shape_frame_direction(&cloud->cloud->inverse, m->light.sun);
     if (cloud->cloud->field.model == SHAPE_MODEL_GRID)

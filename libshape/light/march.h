@@ -18,7 +18,7 @@ typedef struct march_cloud {
     shape_lightgrid grid; /* of all light, of depths, or that of 2018; else without cells */
     grid_way sun;         /* model grid: towards it, t in metres */
     float *seen;          /* SHAPE_MARCH_GRID: its cells as the eye sees them, MARCH_SEEN numbers each */
-    float cap;            /* shape_beam_cap's */
+    shape_beam_peak peak;
     shape_vec3
         cells; /* of the grid, in a metre of the cloud's frame, where rays keep light (shape_beam_kept); else 0 */
     bool hidden; /* it throws shadows, and is not drawn */

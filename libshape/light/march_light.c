@@ -48,6 +48,7 @@ typedef struct lit_point {
     shape_dvec3 world;
     shape_vec3 p; /* cloud's frame */
     double extinction;
+    float cells2; /* cells_away */
 } lit_point;
 
 /* With `silver`, thin parts scatter straight on and thick ones all round. */
@@ -98,15 +99,16 @@ static void look_up(march_ray *ray, const lit_point *at, const float albedo[3], 
     const march_cloud *cloud = at->cloud;
     const shape_light *light = &ray->marcher->light;
     const bool coloured = shape_cloud_is_coloured(cloud->cloud);
+    const float straight = shape_beam_straight(at->cells2);
     double seen[MARCH_SEEN_COLOURED];
     if (ray->beam_cloud != cloud)
-        ray->beam = shape_beam_make(&cloud->cloud->medium, cloud->cap,
+        ray->beam = shape_beam_make(&cloud->cloud->medium, &cloud->peak,
                                     (float)shape_dvec3_dot(ray->direction, light->sun));
     ray->beam_cloud = cloud;
     march_grid_values(&cloud->grid, cloud->seen, coloured ? MARCH_SEEN_COLOURED : MARCH_SEEN, at->p, seen);
     for (int c = 0; c < 3; c++) {
         float own = coloured ? albedo[c] : cloud->cloud->medium.albedo;
-        float beam = shape_beam_source(&ray->beam, own, (float)seen[coloured ? 3 + c : 3]);
+        float beam = shape_beam_source(&ray->beam, own, (float)seen[coloured ? 3 + c : 3], straight);
         rgb[c] = (coloured ? (double)own : 1) * seen[c] + (double)(light->sun_irradiance[c] * beam);
     }
 }
@@ -134,16 +136,25 @@ static void light_point(march_ray *ray, const lit_point *at, double rgb[3])
             (grid ? rgb[c] : rgb[c] * (double)albedo[c]) + (double)albedo[c] * (double)m->options.ambient[c];
 }
 
-/* What a ray is left with of a cloud's extinction at t; `direction` is its own, in the cloud's frame. */
-static double kept(const march_ray *ray, const march_cloud *cloud, shape_vec3 direction, float t)
+/* The square of the distance t in cells of the light grid, infinite where rays keep no light; `direction` is the ray's, in
+ * the cloud's frame. */
+static float cells_away(const march_cloud *cloud, shape_vec3 direction, float t)
 {
-    if (ray->beam_cloud != cloud || !(cloud->cells.x > 0))
-        return 1;
+    if (!(cloud->cells.x > 0))
+        return INFINITY;
     const shape_vec3 way =
         shape_vec3_scale(shape_vec3_make(direction.x * cloud->cells.x, direction.y * cloud->cells.y,
                                          direction.z * cloud->cells.z),
                          t);
-    return (double)shape_beam_kept(&ray->beam, cloud->cloud->medium.albedo, shape_vec3_dot(way, way));
+    return shape_vec3_dot(way, way);
+}
+
+/* What a ray is left with of a cloud's extinction. */
+static double kept(const march_ray *ray, const lit_point *at)
+{
+    if (ray->beam_cloud != at->cloud)
+        return 1;
+    return (double)shape_beam_kept(&ray->beam, at->cloud->cloud->medium.albedo, at->cells2);
 }
 
 /* The square of u at a point of cloud i; above the support's where there is nothing. */
@@ -182,10 +193,11 @@ march_sample march_look(march_ray *ray, float t)
         if (!(density > 0))
             continue;
         lit_point at = {&m->clouds[i], shape_dvec3_add(origin, shape_dvec3_scale(ray->direction, (double)t)),
-                        p, density * (double)cloud->medium.extinction};
+                        p, density * (double)cloud->medium.extinction,
+                        cells_away(&m->clouds[i], local.direction, t)};
         if (at.extinction > 0)
             light_point(ray, &at, rgb);
-        sample.extinction += at.extinction * kept(ray, &m->clouds[i], local.direction, t);
+        sample.extinction += at.extinction * kept(ray, &at);
         for (int c = 0; c < 3; c++)
             sample.added[c] +=
                 (at.extinction > 0 ? at.extinction * rgb[c] : 0) + density * (double)m->options.emission[c];

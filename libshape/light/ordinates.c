@@ -50,7 +50,8 @@ static direction make_direction(const ordinates_problem *p, int octant, int whic
     ordinates_direction(number, d.omega);
     float rise = d.omega[0] * p->up.x + d.omega[1] * p->up.y + d.omega[2] * p->up.z;
     float upper = rise < 0 ? 1.0f : 0.0f; /* what travels down came from above */
-    d.border = (lanes){0, p->above ? upper * p->above[number] : upper, 1 - upper, 0};
+    float share = p->sky ? p->sky[number] : 1;
+    d.border = (lanes){0, share * upper, share * (1 - upper), 0};
     d.kx = fabsf(d.omega[0]) / p->cell[0];
     d.ky = fabsf(d.omega[1]) / p->cell[1];
     d.kz = fabsf(d.omega[2]) / p->cell[2];

@@ -28,16 +28,16 @@ typedef struct ordinates_problem {
     const float *shares;     /* what albedo is multiplied by in each cell; NULL: 1 */
     shape_vec3 sun_travel;   /* unit direction in which sun light travels, grid's frame */
     shape_vec3 up;           /* the world's up, grid's frame, unit */
-    const float *above; /* [ORDINATES_DIRECTIONS] what the upper half of the sky sends along each; NULL: 1 */
-    float *moments;     /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
-    shape_stop stop;    /* to break off */
-    uint64_t *visits;   /* cells times rounds are added; NULL: not counted */
+    const float *sky;        /* [ORDINATES_DIRECTIONS] what its half of the sky sends along each; NULL: 1 */
+    float *moments;          /* in: a first guess; out: the solution. [cells][ORDINATES_CELL] */
+    shape_stop stop;         /* to break off */
+    uint64_t *visits;        /* cells times rounds are added; NULL: not counted */
 } ordinates_problem;
 
 /* The direction in which light of that number travels: unit, grid's frame. */
 void ordinates_direction(int number, float omega[3]);
 
-/* What the upper half of the sky sends along each direction into the cloud's grid, in units of that half's mean radiance
+/* What the sky sends along each direction into the cloud's grid, in units of the mean radiance of the half that it comes from
  * (skyshare.c). All 1 for a sky that is even. */
 void ordinates_sky_shares(const shape_sky *sky, const shape_volume_cloud *cloud,
                           float shares[ORDINATES_DIRECTIONS]);

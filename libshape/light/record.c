@@ -53,9 +53,11 @@ void shape_record_fill(shape_record record, const shape_volume_cloud *c, const s
     put(record[17], c->medium.lobe_mix, mean, share, rest);
     for (int i = 24; i < SHAPE_RECORD_TEXELS; i++)
         put(record[i], 0, 0, 0, 0);
-    record[35][3] = fminf(shape_beam_cap(&c->medium), 1e30f);
     if (c->detailed)
         fill_details(record, c, places);
+    const shape_beam_peak peak = shape_beam_peak_make(&c->medium);
+    record[34][3] = peak.ahead;
+    record[35][3] = fminf(peak.cap, 1e30f);
 }
 
 void shape_record_set_light(shape_record record, const shape_volume_cloud *cloud, const shape_lightgrid *grid,

@@ -6,22 +6,25 @@
  * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p, cap)
  * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is, with the rays' share,
  *
- *   E exp(-x) (p - r) + f (1 - h) L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g' flux of what was scattered before)
+ *   B + f (1 - h) L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g_r flux of what was scattered before)
  *
- * L is the radiance that comes through the grid along the ray (seen_sweep.c), and h is what stays on the ray itself near the eye
+ * B is the rays' share (beam.c), g_r the mean cosine of r: with g', that of the delta scaling, a surface lit from the eye's side was up to a
+ * fifth too bright. L is the radiance that comes through the grid along the ray (seen_sweep.c), the sky behind it as often turned as it was scattered
+ * within the peak (skyspread.c), and h is what stays on the ray itself near the eye
  * (shape_beam_straight; of clouds of several colours nothing, whose extinction is one for all). To first order it would be mean + 3 flux, which at
  * the cloud's surface, where all light goes one way, is a fifth too much: the light there is a step, not a cosine. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "light/seen.h"
+#include "light/skyspread.h"
 #include "shape/beam.h"
 #include "shape/phase.h"
 
 typedef struct seen_light {
     float sun[3], upper[3], lower[3];
     shape_vec3 to_sun;
-    float rest, cap; /* mean cosine without the peak; the largest value of the phase function without it */
+    shape_beam_peak peak;
 } seen_light;
 
 static seen_grid make_grid(const shape_lightgrid *grid, const shape_volume_cloud *cloud, const shape_sky *sky,
@@ -63,9 +66,9 @@ static void add_sources(const seen_grid *s, const seen_light *l, const seen_cell
     float edge2 = (e.x * e.x + e.y * e.y + e.z * e.z) / 3;
     float away2 = shape_vec3_dot(v, v) / fmaxf(edge2, 1e-30f), same = away2 / (away2 + 1.0f / 6);
     float phase = shape_phase(medium, shape_vec3_dot(look->world, l->to_sun));
-    float blunt = fminf(same * phase + (1 - same) / 12.566371f, l->cap);
+    float blunt = fminf(same * phase + (1 - same) / 12.566371f, l->peak.cap);
     float albedo = s->grid->albedos ? s->grid->albedos[index] : medium->albedo, thin = 1 - albedo * s->peak;
-    float turned = 3 * same * l->rest, kept = 1 - s->peak, beam = expf(-thin * cell[0]) * blunt;
+    float turned = 3 * same * l->peak.rest, kept = 1 - s->peak, beam = expf(-thin * cell[0]) * blunt;
     float sun = kept * first_order(cell[1], turned, cell + 4, travel);
     float upper = kept * first_order(cell[2], turned, fluxes + 1, travel);
     float lower = kept * first_order(cell[3], turned, fluxes + 4, travel);
@@ -97,6 +100,31 @@ static void add_all(const seen_grid *s, const seen_light *l, float *rgba, seen_l
         }
 }
 
+/* The sky from behind: what comes through has been scattered within the peak on its way, and is so once more. */
+static void add_sky(const seen_grid *s, seen_lanes *arriving)
+{
+    const float least = 1e-5f, inside = s->cloud->medium.albedo * s->peak;
+    const float each = inside / fmaxf(1 - inside, 1e-5f); /* of such scatterings to one that ends the way */
+    const int *n = s->grid->size, rows = n[1] * n[2];
+#pragma omp parallel for schedule(dynamic, 8) if (rows > 256)
+    for (int row = 0; row < rows; row++)
+        for (int x = 0; x < n[0]; x++) {
+            const int at[3] = {x, row % n[1], row / n[1]};
+            const size_t i = (size_t)row * (size_t)n[0] + (size_t)x;
+            const float through = arriving[i][3];
+            if (!(through > least))
+                continue;
+            const shape_vec3 from = seen_look(s, at).world;
+            float rgb[3];
+            if (s->grid->sky) {
+                arriving[i] += through * skyspread_look(s->grid->sky, from, 1 - each * logf(through));
+            } else {
+                shape_sky_radiance(s->sky, from, rgb);
+                arriving[i] += through * (seen_lanes){rgb[0], rgb[1], rgb[2], 0};
+            }
+        }
+}
+
 shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volume_cloud *cloud,
                                   const shape_light *light, const shape_sky *sky, const float sky_upper[3],
                                   const float sky_lower[3], shape_dvec3 eye, float *rgba, shape_error *error)
@@ -110,8 +138,9 @@ shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volum
         free(arriving);
         return shape_error_memory(error);
     }
-    shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &s.peak, &l.rest);
-    l.cap = shape_beam_cap(&cloud->medium);
+    float rest;
+    shape_delta_scaling(shape_phase_mean_cosine(&cloud->medium), &s.peak, &rest);
+    l.peak = shape_beam_peak_make(&cloud->medium);
     for (int c = 0; c < 3; c++) {
         l.sun[c] = light->sun_irradiance[c];
         l.upper[c] = sky_upper[c];
@@ -119,8 +148,10 @@ shape_status shape_lightgrid_seen(const shape_lightgrid *grid, const shape_volum
     }
     s.swept = s.peak > 0 && grid->fluxes;
     add_all(&s, &l, rgba, added, arriving);
-    if (s.swept)
+    if (s.swept) {
         seen_sweep(&s, added, arriving);
+        add_sky(&s, arriving);
+    }
     float albedo = grid->albedos ? 1 : cloud->medium.albedo;
     for (size_t i = 0; i < cells; i++) {
         float thin = fmaxf(1 - s.peak * (grid->albedos ? grid->albedos[i] : cloud->medium.albedo), 1e-6f);

@@ -29,7 +29,8 @@ typedef float seen_lanes __attribute__((vector_size(16), aligned(16)));
 
 /* Follows light through the grid to the eye. added: a cell's radiance scattered towards the eye a metre, red, green, blue,
  * and its extinction, both after the delta scaling. arriving: in, [3] the cell's distance from the eye [m of the world];
- * out, red, green, blue of the radiance that passes its middle towards the eye (seen_sweep.c). */
+ * out, red, green, blue of the radiance that passes its middle towards the eye and comes from cells, and [3] the share of the sky
+ * behind them that does (seen_sweep.c). */
 void seen_sweep(const seen_grid *s, const seen_lanes *added, seen_lanes *arriving);
 
 #endif

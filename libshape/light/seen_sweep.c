@@ -71,58 +71,38 @@ static crossing find_crossing(const seen_grid *s, const int at[3], const float q
     return x;
 }
 
-/* Beyond the grid there is nothing but the sky, which arriving holds for the cells that have a neighbour there. */
+/* Beyond the grid there is nothing but the sky, all of which comes through. */
 static void cross(const seen_grid *s, const int at[3], const float q[3], const seen_lanes *added,
                   seen_lanes *arriving)
 {
     const size_t index = cell_index(s, at);
-    const seen_lanes sky = arriving[index], here = added[index];
+    const seen_lanes here = added[index];
+    const float away = arriving[index][3];
+    arriving[index] = (seen_lanes){0, 0, 0, 0};
     int d = q[0] > q[1] ? 0 : 1;
     d = q[2] > q[d] ? 2 : d;
     if (!(q[d] > 1e-4f)) /* the eye is here; no direction is meant */
         return;
-    const crossing x = find_crossing(s, at, q, d, sky[3]);
+    const crossing x = find_crossing(s, at, q, d, away);
     seen_lanes far = {0, 0, 0, 0}, light = {0, 0, 0, 0};
     for (int k = 0; k < 4; k++)
         if (x.inside[k]) {
             far += x.weight[k] * added[x.cell[k]];
             light += x.weight[k] * arriving[x.cell[k]];
         } else {
-            light += x.weight[k] * sky;
+            light[3] += x.weight[k];
         }
     const seen_lanes mean = 0.5f * (far + here);
-    float depth = mean[3] * x.way, passed = expf(-depth);
+    float depth = mean[3] * x.way, passed = expf(-depth), through = light[3] * passed;
     light = light * passed + mean * (depth > 1e-4f ? (1 - passed) / mean[3] : x.way);
-    light[3] = 0;
+    light[3] = through;
     arriving[index] = light;
-}
-
-/* The sky behind the cells that the grid sends nothing to, from one side at least. */
-static void fill_border(const seen_grid *s, seen_lanes *arriving)
-{
-    const int *n = s->grid->size;
-    int rows = n[1] * n[2];
-#pragma omp parallel for schedule(dynamic, 8) if (rows > 256)
-    for (int row = 0; row < rows; row++)
-        for (int x = 0; x < n[0]; x++) {
-            const int at[3] = {x, row % n[1], row / n[1]};
-            bool border = false;
-            for (int axis = 0; axis < 3; axis++)
-                border = border || outside(s, axis, behind(s, axis, at[axis]));
-            if (border) {
-                float rgb[3];
-                shape_sky_radiance(s->sky, seen_look(s, at).world, rgb);
-                seen_lanes *to = &arriving[cell_index(s, at)];
-                *to = (seen_lanes){rgb[0], rgb[1], rgb[2], (*to)[3]};
-            }
-        }
 }
 
 void seen_sweep(const seen_grid *s, const seen_lanes *added, seen_lanes *arriving)
 {
     const int *n = s->grid->size;
     const shape_vec3 low = shape_vec3_sub(s->grid->box.min, s->eye), e = s->edge;
-    fill_border(s, arriving);
     for (int k = 0; k < n[2]; k++)
         for (int j = 0; j < n[1]; j++)
             for (int i = 0; i < n[0]; i++) {

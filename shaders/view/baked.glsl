@@ -67,7 +67,8 @@ void load_baked(int c, vec3 direction)
 #ifdef LAW
     law_load(c, cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.rgb, direction);
 #else
-    beam_load(cloud_texel(c, 16), cloud_texel(c, 17), droplet, own.w, direction, light_slope * vec3(textureSize(LIGHT_GRIDS, 0)));
+    beam_load(cloud_texel(c, 16), cloud_texel(c, 17), droplet, vec2(own.w, cloud_texel(c, 34).w), direction,
+              light_slope * vec3(textureSize(LIGHT_GRIDS, 0)));
 #endif
     fetches += 4.0;
 }
@@ -85,7 +86,7 @@ vec3 light_at(float t)
 #ifdef LAW
     vec3 light = law_light(texture(light_depth, place).r);
 #else
-    vec3 light = beam_light(texture(light_seen, place));
+    vec3 light = beam_light(texture(light_seen, place), t);
 #endif
 #ifdef AIR
     light = through_air(light, t);

@@ -66,12 +66,12 @@ vec3 light_at(vec3 p, float t)
     vec3 light = law_light(texture(light_depth, place).r);
 #else
     for (int k = cloud_index == beam_cloud ? 1 : 0; k < 1; k++) { // once a ray and cloud; a loop, as in light/law.glsl
-        beam_load(cloud_texel(cloud_index, 16), cloud_texel(cloud_index, 17), size.w, cloud_texel(cloud_index, 35).w, ray,
-                  cloud_direction / (high.xyz - low.xyz) * size.xyz);
+        beam_load(cloud_texel(cloud_index, 16), cloud_texel(cloud_index, 17), size.w,
+                  vec2(cloud_texel(cloud_index, 35).w, cloud_texel(cloud_index, 34).w), ray, cloud_direction / (high.xyz - low.xyz) * size.xyz);
         beam_cloud = cloud_index;
-        fetches += 3.0;
+        fetches += 4.0;
     }
-    vec3 light = beam_light(texture(light_seen, place));
+    vec3 light = beam_light(texture(light_seen, place), t);
 #endif
 #ifdef AIR
     light = through_air(light, t);

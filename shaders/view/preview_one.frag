@@ -9,7 +9,7 @@
 flat in vec4 tile_x, tile_y, tile_z, tile_low, tile_high;
 flat in vec3 tile_baked, tile_baked_offset, tile_light, tile_light_offset, tile_light_low, tile_light_high;
 flat in vec4 tile_medium, tile_more, tile_own;
-flat in float tile_droplet;
+flat in float tile_droplet, tile_ahead;
 
 void load_tile(vec3 ray)
 {
@@ -26,7 +26,8 @@ void load_tile(vec3 ray)
 #ifdef LAW
     law_load(0, tile_medium, tile_more, tile_droplet, tile_own.rgb, ray);
 #else
-    beam_load(tile_medium, tile_more, tile_droplet, tile_own.w, ray, light_slope * vec3(textureSize(LIGHT_GRIDS, 0)));
+    beam_load(tile_medium, tile_more, tile_droplet, vec2(tile_own.w, tile_ahead), ray,
+              light_slope * vec3(textureSize(LIGHT_GRIDS, 0)));
 #endif
 }
 

@@ -15,7 +15,7 @@ flat out vec3 tile_baked, tile_baked_offset;
 flat out vec3 tile_light, tile_light_offset, tile_light_low, tile_light_high;
 flat out vec4 tile_medium, tile_more; // texels 16 and 17 of the record
 flat out vec4 tile_own;               // texel 35
-flat out float tile_droplet;
+flat out float tile_droplet, tile_ahead; // w of texels 9 and 34
 
 void main()
 {
@@ -34,4 +34,5 @@ void main()
     tile_more = cloud_texel(c, 17);
     tile_own = cloud_texel(c, 35);
     tile_droplet = cloud_texel(c, 9).w;
+    tile_ahead = cloud_texel(c, 34).w;
 }

@@ -28,7 +28,7 @@ typedef struct dense_cloud {
     int cells[3];
     float light_low[3], light_scale[3];
     const shape_medium *medium;
-    float cap; /* shape_beam_cap's */
+    shape_beam_peak peak;
 } dense_cloud;
 
 typedef struct painter {
@@ -184,7 +184,8 @@ static void light_at(const crossing *x, float t, float light[3])
         float l0 = l[0] + f[1] * (l[1] - l[0]), l1 = l[2] + f[1] * (l[3] - l[2]);
         seen[k] = l0 + f[2] * (l1 - l0);
     }
-    const float beam = shape_beam_source(&x->beam, x->cloud->medium->albedo, seen[3]);
+    const float beam =
+        shape_beam_source(&x->beam, x->cloud->medium->albedo, seen[3], shape_beam_straight(x->near * t * t));
     for (int k = 0; k < 3; k++)
         light[k] = seen[k] + beam * x->sun[k];
 }
@@ -288,7 +289,7 @@ static int gather(const painter *p, int x, int y, const float ray[3], crossing *
         crossing found;
         if (!c->voxels || !c->light || !cross(c, ray, &found))
             continue;
-        found.beam = shape_beam_make(c->medium, c->cap,
+        found.beam = shape_beam_make(c->medium, &c->peak,
                                      ray[0] * p->to_sun[0] + ray[1] * p->to_sun[1] + ray[2] * p->to_sun[2]);
         found.sun = p->sun;
         if (count == MOST && all[MOST - 1].t0 <= found.t0)
@@ -430,7 +431,7 @@ static void take_cloud(const shape_gl_renderer *r, const gl_grids *grids, int cl
     memset(to, 0, sizeof *to);
     to->extinction = record[3][3];
     to->medium = &r->volume->clouds[cloud].medium;
-    to->cap = record[35][3];
+    to->peak = (shape_beam_peak){.cap = record[35][3], .ahead = record[34][3]};
     for (int i = 0; i < 3; i++) {
         to->low[i] = record[3][i];
         to->high[i] = record[4][i];

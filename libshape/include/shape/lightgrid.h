@@ -16,8 +16,8 @@ extern "C" {
 /* Values a cell, all for sources of unit strength, so that colours can change without a new pass:
  *   0     optical depth to the sun, through every cloud
  *   1     mean over directions of the radiance scattered at least once, for a sun of irradiance 1
- *   2, 3  the same for a sky of mean radiance 1 above the horizon (a clear sky's is spread as that one is), and of 1 below
- *         it; unscattered sky light included
+ *   2, 3  the same for a sky of mean radiance 1 above the horizon and of 1 below it (a clear sky's halves
+ *         are spread as they are); unscattered sky light included
  *   4..6  first moment of 1 (mean of radiance times direction of travel), cloud's frame
  *   7     first moment of 2 along the world's y
  */
@@ -34,7 +34,8 @@ typedef struct shape_lightgrid {
     float *fluxes;    /* [cells][SHAPE_LIGHTGRID_FLUXES]; NULL where scattering was not asked for */
     float *densities; /* mean densities of the cells, where scattered light has been solved for; else NULL */
     float *albedos;   /* of a coloured cloud: the means of the channel's albedo in the cells; else NULL */
-    uint64_t visits;  /* what it took: cells times rounds of the solution for scattered light */
+    struct skyspread *sky; /* private: a clear sky through the phase function's peak; else NULL */
+    uint64_t visits;       /* what it took: cells times rounds of the solution for scattered light */
 } shape_lightgrid;
 
 typedef struct shape_lightgrid_options {

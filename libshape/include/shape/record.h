@@ -26,8 +26,8 @@
  *   31      layer: Worley's gain, frequency and octaves; planet's radius
  *   32      layer: A, B, coverage, cut
  *   33      layer: falloff, fades at the bottom, the top, the sides
- *   34      layer: 1 / cell along x, y, z
- *   35      x, y, z the program's own (the viewer keeps ambient light and emission there), 0 without; w: shape_beam_cap's
+ *   34      layer: 1 / cell along x, y, z; w, of any cloud: shape_beam_peak's `ahead`
+ *   35      x, y, z the program's own (the viewer keeps ambient light and emission there), 0 without; w: shape_beam_peak's cap
  */
 #ifndef SHAPE_RECORD_H
 #define SHAPE_RECORD_H
@@ -51,7 +51,7 @@ typedef struct shape_record_places {
 } shape_record_places;
 
 /* Fills what depends neither on the eye nor on the light: texels 3 to 7, 12 to 17, and from 24 on (0 where there are no details, but
- * 35's w). */
+ * the w of 34 and 35). */
 void shape_record_fill(shape_record record, const shape_volume_cloud *cloud,
                        const shape_record_places *places);
 /* Texels 8 to 11. place [cells]: where the grid's first cell lies in the light textures; NULL: at their beginning. */
