@@ -31,6 +31,13 @@ typedef enum chart_change {
     CHART_CHANGES
 } chart_change;
 
+/* Two times are of interest. */
+typedef enum chart_kind {
+    CHART_PICTURE, /* from the volume in memory: light, baking, drawing */
+    CHART_FRAME,   /* drawing alone, light and baking done before */
+    CHART_KINDS
+} chart_kind;
+
 typedef struct chart_setting {
     chart_method method;
     shape_rule rule;
@@ -57,6 +64,8 @@ const char *chart_method_name(chart_method method);
 bool chart_method_is_gl(chart_method method);
 /* Whether a setting of the table is its method as the program has it. */
 bool chart_setting_is_default(const chart_setting *setting);
+/* The same for a picture or a frame: of the viewer's method, which draws a moving view in another way, the frame is that one. */
+bool chart_setting_is_default_of(const chart_setting *setting, chart_kind kind);
 /* Everything that sets it apart, without commas. */
 void chart_setting_text(const chart_setting *setting, char text[CHART_TEXT]);
 /* For the picture: what is not as usual. */
@@ -67,13 +76,6 @@ shape_status chart_setting_apply(const chart_setting *setting, const shape_set *
                                  bool *changed, shape_error *error);
 
 /* --- results --- */
-
-/* Two times are of interest. */
-typedef enum chart_kind {
-    CHART_PICTURE, /* from the volume in memory: light, baking, drawing */
-    CHART_FRAME,   /* drawing alone, light and baking done before */
-    CHART_KINDS
-} chart_kind;
 
 /* A setting on a scene. */
 typedef struct chart_row {

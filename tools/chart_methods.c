@@ -141,6 +141,31 @@ bool chart_setting_is_default(const chart_setting *setting)
     return setting == chart_settings || setting->method != setting[-1].method;
 }
 
+/* Of a method's default, the setting that differs by `moving` alone; NULL: it has none. */
+static const chart_setting *moving_twin(const chart_setting *setting)
+{
+    char text[CHART_TEXT], other[CHART_TEXT];
+    chart_setting twin = *setting;
+    twin.moving = true;
+    chart_setting_text(&twin, text);
+    for (size_t i = 0; i < chart_setting_count; i++) {
+        chart_setting_text(&chart_settings[i], other);
+        if (chart_settings[i].method == twin.method && !strcmp(text, other))
+            return &chart_settings[i];
+    }
+    return NULL;
+}
+
+bool chart_setting_is_default_of(const chart_setting *setting, chart_kind kind)
+{
+    for (size_t i = 0; kind == CHART_FRAME && i < chart_setting_count; i++)
+        if (chart_settings[i].method == setting->method && chart_setting_is_default(&chart_settings[i])) {
+            const chart_setting *twin = moving_twin(&chart_settings[i]);
+            return setting == (twin ? twin : &chart_settings[i]);
+        }
+    return chart_setting_is_default(setting);
+}
+
 /* Appends to a text of CHART_TEXT bytes, after a blank. */
 static void SHAPE_PRINTF(2, 3) add(char *text, const char *format, ...)
 {

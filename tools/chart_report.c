@@ -38,21 +38,25 @@ static void print_pick(FILE *file, const chart_scene *scene, chart_kind kind, do
 /* The methods as they are, and what is as accurate in less time. */
 static void print_defaults(FILE *file, const chart_scene *scene)
 {
-    fprintf(file, "| as it is | error | picture | as accurate |\n|---|---|---|---|\n");
-    for (size_t i = 0; i < scene->row_count; i++) {
-        const chart_row *row = &scene->rows[i];
-        if (!row->runs[CHART_PICTURE] || !chart_setting_is_default(row->setting))
-            continue;
-        const chart_row *best = chart_front_pick(scene, CHART_PICTURE, row->relmse);
-        fprintf(file, "| `%s` | %.2g %% |", chart_method_name(row->setting->method), 100 * sqrt(row->relmse));
-        fprintf(file, " %.3g ms |", chart_median(row, CHART_PICTURE));
-        if (best == row)
-            fprintf(file, " nothing is quicker |\n");
-        else
-            fprintf(file, " `%s %s`, %.3g ms |\n", chart_method_name(best->setting->method), best->text,
-                    chart_median(best, CHART_PICTURE));
+    static const char *const names[] = {"a picture", "a frame"};
+    for (int kind = 0; kind < CHART_KINDS; kind++) {
+        fprintf(file, "| %s as it is | error | time | as accurate |\n|---|---|---|---|\n", names[kind]);
+        for (size_t i = 0; i < scene->row_count; i++) {
+            const chart_row *row = &scene->rows[i];
+            if (!row->runs[kind] || !chart_setting_is_default_of(row->setting, (chart_kind)kind))
+                continue;
+            const chart_row *best = chart_front_pick(scene, (chart_kind)kind, row->relmse);
+            fprintf(file, "| `%s%s` | %.3g %% |", chart_method_name(row->setting->method),
+                    row->setting->moving ? " moving" : "", 100 * sqrt(row->relmse));
+            fprintf(file, " %.3g ms |", chart_median(row, (chart_kind)kind));
+            if (best == row)
+                fprintf(file, " nothing is quicker |\n");
+            else
+                fprintf(file, " `%s %s`, %.3g ms |\n", chart_method_name(best->setting->method), best->text,
+                        chart_median(best, (chart_kind)kind));
+        }
+        fputc('\n', file);
     }
-    fputc('\n', file);
 }
 
 static void print_scene(FILE *file, const chart_scene *scene)

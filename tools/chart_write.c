@@ -109,7 +109,7 @@ static void print_defaults(FILE *file, const chart_scene *scene, chart_kind kind
         const chart_row *row = &scene->rows[i];
         chart_method m = row->setting->method;
         bool paper = m != CHART_MARCH && m != CHART_GL && m != CHART_GL_EXACT;
-        if (chart_setting_is_default(row->setting) && in_panel(row, kind) && paper == of_2018 &&
+        if (chart_setting_is_default_of(row->setting, kind) && in_panel(row, kind) && paper == of_2018 &&
             m != CHART_GL_EXACT)
             fprintf(file, "%.6g %.6g\n", chart_median(row, kind), percent(row));
     }

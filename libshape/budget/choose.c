@@ -9,7 +9,7 @@
 #include "budget/chooser.h"
 
 /* What is predicted is raised by this before it is held against what is allowed (fitted, docs/error.md). */
-static const double caution = 1.25;
+static const double caution = 1.35;
 
 /* --- what is there --- */
 
@@ -147,6 +147,8 @@ static shape_status choose(chooser *c, shape_error *error)
     if (!status) {
         chosen.error = hypot(c->step_error[chosen.step], c->cell_error[chosen.cell]);
         status = decide(c, &chosen, error);
+        if (!status)
+            status = chooser_confirm(c, &chosen.step, chosen.cut, chosen.cell, &chosen.error, error);
     }
     chooser_drop(c);
     if (status)

@@ -32,7 +32,7 @@ typedef struct chooser {
     double tail;                                          /* the error of the finest light grid made */
 } chooser;
 
-/* Cells of each cloud's grid, into the choice: the fewer, the smaller it is in the picture. */
+/* Cells of each cloud's grid, into the choice: the fewer, the smaller it is in the picture, but at the last rung. */
 void chooser_set_cells(const chooser *c, int cells);
 int chooser_steps(const chooser *c, int rung);
 /* How many octaves have cells of at least so many pixels, seen at the nearest. */
@@ -43,6 +43,9 @@ void chooser_cut(shape_volume_cloud *cloud, int octaves);
 shape_status chooser_measure(chooser *c, shape_error *error);
 /* The error of three settings together, light grids that were not made standing for their error alone. */
 shape_status chooser_try(chooser *c, int step, int cut, int cell, double *found, shape_error *error);
+/* A layer with a light grid that was not made, and whose light a step may miss: makes it, and raises the steps until twice as
+ * many change little. */
+shape_status chooser_confirm(chooser *c, int *step, int cut, int cell, double *found, shape_error *error);
 void chooser_drop(chooser *c);
 
 #endif

@@ -12,9 +12,11 @@ const double chooser_pixels[CUTS] = {0, 0.5, 1, 2, 4};
 
 void chooser_set_cells(const chooser *c, int cells)
 {
+    const bool all =
+        cells == chooser_cells[CELL_RUNGS - 1]; /* nothing finer is on offer: it is to miss nothing */
     for (size_t i = 0; i < c->volume->cloud_count; i++) {
         bool seen = c->choice->sights[i] == SHAPE_BUDGET_SEEN;
-        c->choice->resolutions[i] = seen ? (int)fmax(ceil(cells * c->across[i]), 2) : 0;
+        c->choice->resolutions[i] = seen ? (int)fmax(ceil(all ? cells : cells * c->across[i]), 2) : 0;
     }
 }
 
@@ -205,6 +207,9 @@ static void rate_light(chooser *c, const probe_picture *pictures)
         c->cell_error[k] = hypot(c->cell_error[k], c->tail);
     for (int k = last; k < CELL_RUNGS; k++)
         c->cell_error[k] = c->tail * pow(off(chooser_cells[k]) / off(chooser_cells[last]), 0.7);
+    /* A layer is a few cells high, and what it misses depends on how its faces lie among them: only the last is sure. */
+    for (int k = last + 1; k + 1 < CELL_RUNGS && has_layer(c); k++)
+        c->cell_error[k] = c->tail;
 }
 
 /* What finer grids cost: their cells. */
@@ -307,6 +312,39 @@ shape_status chooser_measure(chooser *c, shape_error *error)
         status = try_light(c, step, lit, error);
     if (!status)
         status = confirm_steps(c, step, &lit[c->tried - 1], &pictures[0], error);
+    free(pictures);
+    return status;
+}
+
+shape_status chooser_confirm(chooser *c, int *step, int cut, int cell, double *found, shape_error *error)
+{
+    if (cell < c->tried || !has_layer(c))
+        return SHAPE_OK;
+    double cost, change = 0;
+    shape_marcher *unmade = c->grids[0], *made = NULL;
+    probe_picture *pictures = malloc(2 * sizeof *pictures);
+    shape_march_options options = c->options;
+    if (!pictures)
+        return shape_error_memory(error);
+    chooser_set_cells(c, chooser_cells[cell]);
+    options.resolutions = c->choice->resolutions;
+    make_cut(c, chooser_pixels[cut], &cost);
+    shape_status status = shape_marcher_create(&c->cut, c->light, c->view->eye, &options, &made, error);
+    c->grids[0] = made;
+    if (!status)
+        status = look(c, 0, *step, &pictures[0], error);
+    while (!status && *step + 2 < STEP_RUNGS) {
+        status = look(c, 0, *step + 2, &pictures[1], error);
+        change = probe_change(&c->probe, &pictures[0], &pictures[1]);
+        /* Of order 1: twice the change is what there is to miss. */
+        if (status || 2 * change <= 0.5 * c->allowed)
+            break;
+        pictures[0] = pictures[1];
+        *step += 2;
+    }
+    *found = fmax(*found, 2 * change);
+    c->grids[0] = unmade;
+    shape_marcher_destroy(made);
     free(pictures);
     return status;
 }
