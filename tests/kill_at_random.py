@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Kills writing programs (signal 9) at random moments: python3 tests/kill_at_random.py PROGRAMS SOURCES KILLS [SEED]
+"""Kills writing programs (signal 9) at random moments: python3 tests/kill_at_random.py PROGRAMS SOURCES KILLS [SEED [WRITER,...]]
 
 For each program an old and a new file are made by whole runs. Then the old one is put in place, the program is started
 to write the new one over it, and is killed. What stands there afterwards must be the old file or the new one, byte for
 byte. Other files in the folder may only have the target's name and six characters more; a whole run afterwards must
-succeed beside them. Called by cli_kill.sh."""
+succeed beside them. WRITERS: only these programs, such as gauss,meta. Called by cli_kill.sh."""
 import os
 import random
 import re
@@ -15,6 +15,7 @@ import time
 
 programs, sources, kills = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
 seed = int(sys.argv[4]) if len(sys.argv) > 4 else 1
+only = sys.argv[5].split(",") if len(sys.argv) > 5 else []
 chance = random.Random(seed)
 
 
@@ -56,7 +57,7 @@ def cases(folder):
         listed.append(("m.vdb", command("vdb", cloud, "--resolution", "12"), command("vdb", cloud, "--resolution", "40")))
     shown = ["--headless", "--size", "32x18", "--samples", "1", "--light-grid", "4"]
     listed.append(("n.png", command("view", cloud, *shown), command("view", cloud, *shown, "--sun", "10,50")))
-    return listed
+    return [case for case in listed if not only or os.path.basename(case[2][0])[len("neph-"):] in only]
 
 
 def output_of(name):
@@ -110,6 +111,8 @@ def main():
     counts = {"kills": 0, "old": 0, "new": 0, "leftovers": 0}
     with tempfile.TemporaryDirectory() as folder:
         listed = cases(folder)
+        if not listed:
+            sys.exit("cli_kill: no writer is named %s" % ",".join(only))
         places = []
         for name, old, new in listed:
             place = os.path.join(folder, name + "-folder")
