@@ -15,7 +15,8 @@ logs=${LOGS:-$tmp/logs}
 mkdir -p "$logs" "$tmp/bin"
 logs=$(cd "$logs" && pwd)
 export OMP_NUM_THREADS=1 OMP_WAIT_POLICY=passive NEPHELE_SLOW=60 LOGS="$logs"
-check="valgrind --quiet --fair-sched=try --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
+export MESA_SHADER_CACHE_DISABLE=true # its thread packs shaders, with gaps between their fields that nobody wrote
+check="valgrind --quiet --fair-sched=try --keep-debuginfo=yes --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
  --suppressions=$source/tests/valgrind.supp"
 check=$(echo "$check" | tr -d '\n')
 for program in "$bin"/neph-*; do
