@@ -113,36 +113,42 @@ def main():
         listed = cases(folder)
         if not listed:
             sys.exit("cli_kill: no writer is named %s" % ",".join(only))
-        places = []
+        places, durations = [], []
         for name, old, new in listed:
             place = os.path.join(folder, name + "-folder")
             os.mkdir(place)
-            places.append((place, name, old, new) + whole_runs(place, name, old, new))
+            before, after, duration = whole_runs(place, name, old, new)
+            places.append((place, name, old, new, before, after))
+            durations.append(duration)
         attempt = 0
         while counts["kills"] < kills:
             if attempt > 20 * kills + 100:
                 sys.exit("cli_kill: the programs end before they can be killed")
-            place, name, old, new, before, after, duration = places[attempt % len(places)]
-            attempt += 1
+            place, name, old, new, before, after = places[attempt % len(places)]
+            duration = durations[attempt % len(places)]
             target = os.path.join(place, name)
             with open(target, "wb") as file:
                 file.write(before)
             # Half of them anywhere, half towards the end, where files are written.
             start = 0 if chance.random() < 0.5 else 0.6
-            if not kill_once(place, name, new, duration * (start + (1.05 - start) * chance.random())):
+            killed = kill_once(place, name, new, duration * (start + (1.05 - start) * chance.random()))
+            found = read(target)
+            # A machine that does other work makes runs longer than measured: so that a fourth comes after the new file.
+            durations[attempt % len(places)] *= 1.01 if killed and found == before else 0.97
+            attempt += 1
+            if not killed:
                 continue
             counts["kills"] += 1
             if counts["kills"] % 100 == 0:
                 print("cli_kill: %d kills" % counts["kills"], flush=True)
-            found = read(target)
             if found not in (before, after):
-                sys.exit("cli_kill: %s is neither the old file nor the new one (seed %d, attempt %d)" % (name, seed, attempt))
+                sys.exit("cli_kill: %s is neither the old file nor the new one (seed %d, attempt %d)" % (name, seed, attempt - 1))
             counts["new" if found == after else "old"] += 1
             counts["leftovers"] += check_folder(place, name)
             for other in os.listdir(place):
                 if other != name:
                     os.unlink(os.path.join(place, other))
-        for place, name, old, new, before, after, duration in places:
+        for place, name, old, new, before, after in places:
             # What a kill at the worst moment leaves must not disturb.
             with open(os.path.join(place, name + ".000001"), "wb") as file:
                 file.write(b"half")
