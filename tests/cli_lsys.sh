@@ -3,6 +3,7 @@ set -eu
 lsys=$1/neph-lsys
 info=$1/neph-info
 examples=$2/examples
+slow=${NEPHELE_SLOW:-1} # so many times slower than usual may the programs be (valgrind, sanitizers)
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
 
@@ -87,12 +88,12 @@ exits 2 "$lsys" "$tmp/paper.lsys" --print --count
 
 # Runaway grammars end, with primitives and without.
 printf 'axiom X\niterations 100000\nX -> X X' > "$tmp/run.lsys"
-exits 1 timeout 5 "$lsys" "$tmp/run.lsys"
+exits 1 timeout $((5 * slow)) "$lsys" "$tmp/run.lsys"
 says "more than 1000000 primitives"
-exits 1 timeout 5 "$lsys" "$tmp/run.lsys" --max-primitives 1000 --count
+exits 1 timeout $((5 * slow)) "$lsys" "$tmp/run.lsys" --max-primitives 1000 --count
 says "run.lsys:3:6: more than 1000 primitives"
 printf 'axiom x\niterations 100000\nx -> [x] x' > "$tmp/run.lsys"
-exits 1 timeout 10 "$lsys" "$tmp/run.lsys" --print
+exits 1 timeout $((10 * slow)) "$lsys" "$tmp/run.lsys" --print
 says "symbols"
 expect "exactly the limit" '{"symbols": 255, "primitives": 128}' \
     "$("$lsys" "$tmp/paper.lsys" --count --max-primitives 128)"
@@ -100,7 +101,7 @@ exits 1 "$lsys" "$tmp/paper.lsys" --max-primitives 127
 
 # The string streams: a reader that leaves early ends it (nine million symbols would take far longer to read).
 printf 'axiom x\niterations 23\nx -> x x' > "$tmp/long.lsys"
-expect "the beginning" xxxxxxxxxx "$(timeout 10 "$lsys" "$tmp/long.lsys" --print 2> /dev/null | head -c 10)"
+expect "the beginning" xxxxxxxxxx "$(timeout $((10 * slow)) "$lsys" "$tmp/long.lsys" --print 2> /dev/null | head -c 10)"
 
 # The examples all give clouds; the castle is long, and lower than long.
 for grammar in "$examples"/*.lsys; do

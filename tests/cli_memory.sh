@@ -1,10 +1,13 @@
 # Memory that runs out, program by program: the n-th allocation of a typical run fails, whoever asks for it, libraries too.
 # The program ends with exit code 0 (it could do without) or 1 and says so; no crash, no hang, no part of a file, nothing
-# left. $1: programs, $2: source folder, $3: how many n a program are tried, spread evenly (12); "all": every one.
+# left. $1: programs, $2: source folder, $3: how many n a program are tried, spread evenly (12); "all": every one;
+# $4: only the run of that name (such as "fit"), $5: from that n on.
 set -eu
 bin=$(cd "$1" && pwd)
 source=$(cd "$2" && pwd)
 tries=${3:-12}
+only=${4:-}
+from=${5:-0}
 most=
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
@@ -28,6 +31,7 @@ if grep -q __gcov_dump "$bin/neph-gauss"; then
     exit 0
 fi
 
+ran=
 mkdir in
 "$bin/neph-gauss" -q --count 6 -o in/c.neph
 "$bin/neph-render" -q in/c.neph --size 8x6 --spp 2 -o in/a.exr
@@ -58,6 +62,8 @@ check() {
 each() {
     name=$1
     shift
+    [ "$only" = "" ] || [ "$only" = "$name" ] || return 0
+    ran=1
     rm -rf out
     mkdir out
     code=0
@@ -69,7 +75,7 @@ each() {
     [ "$tries" != all ] || many=$count
     [ -z "$most" ] || [ "$many" -le "$most" ] || many=$most
     step=$(((count + many - 1) / many))
-    n=0
+    n=$from
     failures=0
     while [ "$n" -lt "$count" ]; do
         rm -rf out
@@ -81,7 +87,7 @@ each() {
         n=$((n + step))
     done
     [ "$failures" -gt 0 ] || fail "$name: no allocation of $count made it fail"
-    echo "$name: $count allocations, every $step tried, $failures made it end with 1"
+    echo "$name: $count allocations, every $step from $from on tried, $failures made it end with 1"
 }
 
 each gauss "$bin/neph-gauss" --count 6 -o out/first.neph --save-scene out/s.json
@@ -106,3 +112,4 @@ most=400
 "$bin/neph-gauss" -q --count 12 --sigma 6,0.1,0.1 --max-radius 0.5 --no-hollow --no-prune -o in/thin.neph
 each view "$bin/neph-view" in/c.neph --headless --size 16x9 --samples 1 --light-grid 4 -o out/x.png
 each chart "$bin/neph-chart" --quick --size 16x9 --runs 1 --reference-noise 2 in/thin.neph -o out/first.chart
+[ -n "$ran" ] || fail "no run is named $only"

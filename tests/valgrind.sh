@@ -1,8 +1,10 @@
 #!/bin/sh
 # Typical runs of the programs under valgrind's memcheck: no byte read before it is written, none outside a block, no block
 # lost. Some minutes: sh tests/valgrind.sh PROGRAMS SOURCE (Debian: valgrind). Slow, so small; one thread.
+# The whole test suite, which takes hours: sh tests/valgrind.sh PROGRAMS SOURCE all [TEST]... (valgrind_all.sh says how)
 # What the libraries themselves leave, or read ahead, is named in tests/valgrind.supp, each with its reason.
 set -eu
+[ "${3:-}" != all ] || exec sh "$2/tests/valgrind_all.sh" "$@"
 bin=$(cd "$1" && pwd)
 source=$(cd "$2" && pwd)
 tmp=$(mktemp -d)

@@ -65,11 +65,12 @@ static shape_status look(chooser *c, int grid, int step, probe_picture *picture,
 /* Up every other rung, until twice as many steps change no more than a part of what is allowed. */
 static shape_status try_steps(chooser *c, int grid, probe_picture *pictures, shape_error *error)
 {
-    shape_status status = SHAPE_OK;
     int k = 0;
-    for (; k < STEP_RUNGS && !status; k += 2) {
+    for (; k < STEP_RUNGS; k += 2) {
         uint64_t before = c->probe.work.looks;
-        status = look(c, grid, k, &pictures[k], error);
+        shape_status status = look(c, grid, k, &pictures[k], error);
+        if (status)
+            return status;
         c->looks[k] = (double)(c->probe.work.looks - before) / c->probe.tries;
         if (k > 0 && probe_change(&c->probe, &pictures[k - 2], &pictures[k]) <= 0.2 * c->allowed) {
             k += 2;
@@ -77,7 +78,7 @@ static shape_status try_steps(chooser *c, int grid, probe_picture *pictures, sha
         }
     }
     c->step_count = k - 1;
-    for (int i = 0; i < k - 2 && !status; i += 2)
+    for (int i = 0; i < k - 2; i += 2)
         c->step_error[i] = probe_change(&c->probe, &pictures[i], &pictures[k - 2]);
     /* The last itself: of order 1 at the jumps of a density. */
     c->step_error[k - 2] = k >= 4 ? c->step_error[k - 4] / 2 : 0;
@@ -85,7 +86,7 @@ static shape_status try_steps(chooser *c, int grid, probe_picture *pictures, sha
         c->step_error[i] = sqrt(c->step_error[i - 1] * c->step_error[i + 1]);
         c->looks[i] = sqrt(c->looks[i - 1] * c->looks[i + 1]);
     }
-    return status;
+    return SHAPE_OK;
 }
 
 /* --- octaves --- */
@@ -149,11 +150,13 @@ static shape_status try_octaves(chooser *c, int grid, int step, const probe_pict
     c->cut_error[0] = 0;
     make_cut(c, 0, &c->cut_cost[0]);
     look_through(c->grids[grid], &c->cut);
-    for (int k = 1; k < CUTS && !status; k++) {
+    for (int k = 1; k < CUTS; k++) {
         /* A cut that changes nothing costs what the one before it does. */
         c->cut_error[k] = c->cut_error[k - 1];
         if (make_cut(c, chooser_pixels[k], &c->cut_cost[k])) {
             status = look(c, grid, step, picture, error);
+            if (status)
+                break;
             c->cut_error[k] = probe_change(&c->probe, picture, whole);
         }
         c->cut_count = k + 1;
@@ -264,12 +267,15 @@ static shape_status confirm_steps(chooser *c, int step, const probe_picture *few
 {
     const double alike = 1.1;
     shape_status status = look(c, c->tried - 1, c->step_count - 1, &c->best, error);
-    if (!status && step < c->step_count - 1 &&
-        probe_change(&c->probe, fewer, &c->best) <= alike * c->step_error[step])
+    if (status)
+        return status;
+    if (step < c->step_count - 1 && probe_change(&c->probe, fewer, &c->best) <= alike * c->step_error[step])
         return SHAPE_OK;
-    while (!status && c->step_count + 1 < STEP_RUNGS) {
+    while (c->step_count + 1 < STEP_RUNGS) {
         int last = c->step_count - 1;
         status = look(c, c->tried - 1, last + 2, spare, error);
+        if (status)
+            return status;
         double change = probe_change(&c->probe, &c->best, spare);
         c->best = *spare;
         if (change <= 0.2 * c->allowed)
@@ -283,7 +289,7 @@ static shape_status confirm_steps(chooser *c, int step, const probe_picture *few
         c->looks[last + 1] = sqrt(2) * c->looks[last];
         c->step_count += 2;
     }
-    return status;
+    return SHAPE_OK;
 }
 
 /* --- all --- */
@@ -303,7 +309,7 @@ shape_status chooser_measure(chooser *c, shape_error *error)
         status = try_steps(c, STEPS_GRID, pictures, error);
     /* What octaves and light change is told with as few steps as will do; only every other rung's were looked through. */
     int step = 0;
-    while (step < c->step_count - 1 && c->step_error[step] > 0.5 * c->allowed)
+    while (!status && step < c->step_count - 1 && c->step_error[step] > 0.5 * c->allowed)
         step += 2;
     probe_picture *lit = pictures ? pictures + STEP_RUNGS + 1 : NULL;
     if (!status)
@@ -362,8 +368,9 @@ shape_status chooser_try(chooser *c, int step, int cut, int cell, double *found,
     look_through(c->grids[g], c->volume);
     /* The finer the light, the more of it a step misses: as much as its cells are smaller. */
     double finer = (double)chooser_cells[cell] / chooser_cells[g];
-    *found = hypot(finer * probe_change(&c->probe, picture, &c->best),
-                   cell < c->tried ? c->tail : c->cell_error[cell]);
+    if (!status)
+        *found = hypot(finer * probe_change(&c->probe, picture, &c->best),
+                       cell < c->tried ? c->tail : c->cell_error[cell]);
     free(picture);
     return status;
 }

@@ -73,7 +73,7 @@ static shape_status check_limits(scene_reader *r, const char *text, size_t size)
 
 static shape_status parse(scene_reader *r, const void *bytes, size_t size, json_t **root)
 {
-    json_error_t at;
+    json_error_t at = {0}; /* without memory jansson sets no code */
     *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &at);
     if (*root)
         return SHAPE_OK;
