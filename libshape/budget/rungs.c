@@ -341,9 +341,10 @@ shape_status chooser_confirm(chooser *c, int *step, int cut, int cell, double *f
         status = look(c, 0, *step, &pictures[0], error);
     while (!status && *step + 2 < STEP_RUNGS) {
         status = look(c, 0, *step + 2, &pictures[1], error);
+        if (status)
+            break;
         change = probe_change(&c->probe, &pictures[0], &pictures[1]);
-        /* Of order 1: twice the change is what there is to miss. */
-        if (status || 2 * change <= 0.5 * c->allowed)
+        if (2 * change <= 0.5 * c->allowed) /* of order 1: twice the change is what there is to miss */
             break;
         pictures[0] = pictures[1];
         *step += 2;
