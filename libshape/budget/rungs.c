@@ -210,9 +210,6 @@ static void rate_light(chooser *c, const probe_picture *pictures)
         c->cell_error[k] = hypot(c->cell_error[k], c->tail);
     for (int k = last; k < CELL_RUNGS; k++)
         c->cell_error[k] = c->tail * pow(off(chooser_cells[k]) / off(chooser_cells[last]), 0.7);
-    /* A layer is a few cells high, and what it misses depends on how its faces lie among them: only the last is sure. */
-    for (int k = last + 1; k + 1 < CELL_RUNGS && has_layer(c); k++)
-        c->cell_error[k] = c->tail;
 }
 
 /* What finer grids cost: their cells. */
