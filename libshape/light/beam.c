@@ -50,7 +50,8 @@ shape_beam_peak shape_beam_peak_make(const shape_medium *medium)
         blunt += fminf(value[i], high) * weight[i] * cosine[i];
     }
     peak.cap = high;
-    peak.ahead = above > 0 ? fmaxf(ahead / above, 0) : 1;
+    /* Of two lobes the higher may look back; its light then counts as going on, widely. */
+    peak.ahead = above > 0 ? fmaxf(ahead / above, 1e-3f) : 1;
     peak.rest = left > 0 ? blunt / left : rest;
     return peak;
 }

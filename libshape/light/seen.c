@@ -6,10 +6,10 @@
  * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p, cap)
  * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is, with the rays' share,
  *
- *   B + f (1 - h) L + S,   S = E exp(-(1 - w f) x) r + (1 - f) (mean + 3 g_r flux of what was scattered before)
+ *   E B + f (1 - h) L + (1 - f) (mean + 3 g_r flux of what was scattered otherwise)
  *
- * B is the rays' share (beam.c), g_r the mean cosine of r: with g', that of the delta scaling, a surface lit from the eye's side was up to a
- * fifth too bright. L is the radiance that comes through the grid along the ray (seen_sweep.c), the sky behind it as often turned as it was scattered
+ * B is the rays' share (beam.c), in cells only its part with r, since that is what L is made of; g_r is the mean cosine of r: with g', that
+ * of the delta scaling, a surface lit from the eye's side was up to a fifth too bright. L is the radiance that comes through the grid along the ray (seen_sweep.c), the sky behind it as often turned as it was scattered
  * within the peak (skyspread.c), and h is what stays on the ray itself near the eye
  * (shape_beam_straight; of clouds of several colours nothing, whose extinction is one for all). To first order it would be mean + 3 flux, which at
  * the cloud's surface, where all light goes one way, is a fifth too much: the light there is a step, not a cosine. */

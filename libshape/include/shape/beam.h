@@ -15,7 +15,7 @@ extern "C" {
 typedef struct shape_beam_peak {
     float
         cap; /* [1/sr] what is above it is the share f that shape_delta_scaling gives (Potter 1970); infinite where f is 0 */
-    float ahead; /* the peak's mean cosine, 0 to 1; 1 where f is 0 */
+    float ahead; /* the peak's mean cosine, 0.001 to 1; 1 where f is 0 */
     float rest;  /* the mean cosine of r, -1 to 1 */
 } shape_beam_peak;
 
