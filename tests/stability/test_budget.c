@@ -211,6 +211,51 @@ static void test_the_picture_is_within_the_error(void **state)
     }
 }
 
+/* Where the default's cells are chosen, since no others will do, the smaller ones of several clouds have them too: with their share
+ * of them this scene was at twice the error allowed. */
+static void test_the_last_cells_are_for_all_clouds(void **state)
+{
+    (void)state;
+    generated_scene s;
+    shape_error error;
+    shape_budget_choice choice;
+    const shape_march_options options = shape_march_defaults();
+    generated_open(&s, 6020);
+    must(shape_budget_march(s.volume, &s.view, &s.light, &options, s.error, &choice, &error), &error);
+    assert_int_equal(choice.cells, options.resolution);
+    assert_true(choice.seen > 1);
+    for (size_t i = 0; i < s.volume->cloud_count; i++)
+        if (choice.sights[i] == SHAPE_BUDGET_SEEN)
+            assert_int_equal(choice.resolutions[i], options.resolution);
+    shape_budget_free(&choice);
+    generated_close(&s);
+}
+
+/* A layer's light is much finer with 48 cells than with the 24 that are tried: its steps, told with these, were too few, and
+ * four times as many changed 1.5 times what is allowed. */
+static void test_steps_of_a_layer_are_told_with_its_own_light(void **state)
+{
+    (void)state;
+    static float finer[VALUES], picture[VALUES];
+    generated_scene s;
+    shape_error error;
+    shape_budget_choice choice;
+    double change;
+    shape_march_options options = shape_march_defaults();
+    generated_open(&s, 6021);
+    must(shape_budget_march(s.volume, &s.view, &s.light, &options, s.error, &choice, &error), &error);
+    assert_int_equal(choice.cells, shape_march_defaults().resolution);
+    shape_budget_apply(&choice, s.volume, &options);
+    draw_generated(&s, s.volume, &options, picture);
+    options.step /= 4;
+    draw_generated(&s, s.volume, &options, finer);
+    must(shape_budget_change(picture, finer, s.view.width, s.view.height, &change, &error), &error);
+    print_message("%d steps, changed by %g of %g\n", choice.steps, change, s.error);
+    assert_true(change <= s.error);
+    shape_budget_free(&choice);
+    generated_close(&s);
+}
+
 static shape_budget_choice choose(const sample_scene *scene, double allowed)
 {
     shape_error error;
@@ -305,6 +350,8 @@ int main(void)
                                        cmocka_unit_test(test_many_tiny_clouds_stay),
                                        cmocka_unit_test(test_empty_view),
                                        cmocka_unit_test(test_the_picture_is_within_the_error),
+                                       cmocka_unit_test(test_the_last_cells_are_for_all_clouds),
+                                       cmocka_unit_test(test_steps_of_a_layer_are_told_with_its_own_light),
                                        cmocka_unit_test(test_less_error_takes_more_and_any_threads_the_same),
                                        cmocka_unit_test(test_wrong_options),
                                        cmocka_unit_test(test_voxels_follow_the_view)};
