@@ -1,15 +1,16 @@
-/* The sun's light that was scattered only within the phase function's peak, and what of it is scattered on towards the eye: the
- * delta scaling with the peak cut off (Potter 1970), and the peak spread round the sun by as many turns as there were (Goudsmit
- * and Saunderson 1940). With x the optical depth to the sun, p the phase function, r = min(p, cap) and w f the share of
- * extinction that is scattering within the peak, the source is
+/* The sun's light that was scattered only within the phase function's peak, and what of it is scattered on towards the
+ * eye: the delta scaling with the peak cut off (Potter 1970), and the peak spread round the sun by as many turns as
+ * there were (Goudsmit and Saunderson 1940). With x the optical depth to the sun, p the phase function, r = min(p, cap)
+ * and w f the share of extinction that is scattering within the peak, the source is
  *
  *   w (exp(-(1 - w f) x) r + exp(-x) (p - r) + (exp(-(1 - w f) x) - exp(-x)) f V)
  *
- * The first is all light that has not left the peak, the second what had not been scattered yet, the third what had. n scatterings on
- * the way are distributed as Poisson has it with mean w f x; V has the mean cosine m of the peak, to the power of 1 and n, the
- * mean of their number where it is not 0: that of von Mises and Fisher, k exp(k (cos - 1)) / (2 pi), with k = 1/2 - 1 / ((1 + n) log m), which is
- * 1 / (1 - m^(1 + n)) but for terms of the first order. A light grid as it is seen holds exp(-(1 - w f) x), and exp(-x) is a power of it. And
- * what goes straight on near the eye. Mirrored by shaders/light/beam.glsl. */
+ * The first is all light that has not left the peak, the second what had not been scattered yet, the third what had. n
+ * scatterings on the way are distributed as Poisson has it with mean w f x; V has the mean cosine m of the peak, to the
+ * power of 1 and n, the mean of their number where it is not 0: that of von Mises and Fisher, k exp(k (cos - 1)) / (2
+ * pi), with k = 1/2 - 1 / ((1 + n) log m), which is 1 / (1 - m^(1 + n)) but for terms of the first order. A light grid
+ * as it is seen holds exp(-(1 - w f) x), and exp(-x) is a power of it. And what goes straight on near the eye. Mirrored
+ * by shaders/light/beam.glsl. */
 #include "shape/beam.h"
 
 #include <math.h>

@@ -46,7 +46,7 @@ void ordinates_direction(int number, float omega[3])
 static direction make_direction(const ordinates_problem *p, int octant, int which)
 {
     const int number = octant * PER_OCTANT + which;
-    direction d;
+    direction d = {0};
     ordinates_direction(number, d.omega);
     float rise = d.omega[0] * p->up.x + d.omega[1] * p->up.y + d.omega[2] * p->up.z;
     float upper = rise < 0 ? 1.0f : 0.0f; /* what travels down came from above */
@@ -94,7 +94,7 @@ static inline void cross(const ordinates_problem *p, const direction d[PER_OCTAN
 {
     const float weight = 1.0f / (OCTANTS * PER_OCTANT);
     const cell_state c = read_cell(p, cell);
-    lanes total[ORDINATES_MOMENTS];
+    lanes total[ORDINATES_MOMENTS] = {{0}};
     for (int i = 0; i < PER_OCTANT; i++) {
         lanes in_y = first_row ? d[i].border : before[i], in_z = first_layer ? d[i].border : plane[i];
         float scale = 1 / (d[i].kx + d[i].ky + d[i].kz + c.extinction);
@@ -103,9 +103,9 @@ static inline void cross(const ordinates_problem *p, const direction d[PER_OCTAN
             scale;
         in_x[i] = plane[i] = out;
         out *= weight;
-        total[0] = i ? total[0] + out : out;
+        total[0] += out;
         for (int axis = 0; axis < 3; axis++)
-            total[axis + 1] = i ? total[axis + 1] + out * d[i].omega[axis] : out * d[i].omega[axis];
+            total[axis + 1] += out * d[i].omega[axis];
     }
     for (int m = 0; m < ORDINATES_MOMENTS; m++)
         store(sum + m * ORDINATES_LANES, total[m]);

@@ -1,18 +1,21 @@
 /* A light grid as one eye sees it, once a cell rather than once a step: the source function towards the eye. What is
- * between cells is interpolated, so a cell stands for the directions from the eye to all points around its middle, and near
- * the eye these are many: there the means over them are taken. The sun's first scattering, whose phase function is a
- * constant of the ray, is left to the rays (beam.c): by cells, pictures flashed when the eye passed one that lay before the sun.
+ * between cells is interpolated, so a cell stands for the directions from the eye to all points around its middle, and
+ * near the eye these are many: there the means over them are taken. The sun's first scattering, whose phase function is
+ * a constant of the ray, is left to the rays (beam.c): by cells, pictures flashed when the eye passed one that lay
+ * before the sun.
  *
- * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p, cap)
- * what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is, with the rays' share,
+ * With f the share of scattering that the delta scaling takes as going straight on, p the phase function and r = min(p,
+ * cap) what is left of it without its peak (Potter 1970: the cap makes r's integral 1 - f), the source is, with the
+ * rays' share,
  *
  *   E B + f (1 - h) L + (1 - f) (mean + 3 g_r flux of what was scattered otherwise)
  *
- * B is the rays' share (beam.c), in cells only its part with r, since that is what L is made of; g_r is the mean cosine of r: with g', that
- * of the delta scaling, a surface lit from the eye's side was up to a fifth too bright. L is the radiance that comes through the grid along the ray (seen_sweep.c), the sky behind it as often turned as it was scattered
- * within the peak (skyspread.c), and h is what stays on the ray itself near the eye
- * (shape_beam_straight; of clouds of several colours nothing, whose extinction is one for all). To first order it would be mean + 3 flux, which at
- * the cloud's surface, where all light goes one way, is a fifth too much: the light there is a step, not a cosine. */
+ * B is the rays' share (beam.c), in cells only its part with r, since that is what L is made of; g_r is the mean cosine
+ * of r: with g', that of the delta scaling, a surface lit from the eye's side was up to a fifth too bright. L is the
+ * radiance that comes through the grid along the ray (seen_sweep.c), the sky behind it as often turned as it was
+ * scattered within the peak (skyspread.c), and h is what stays on the ray itself near the eye (shape_beam_straight; of
+ * clouds of several colours nothing, whose extinction is one for all). To first order it would be mean + 3 flux, which
+ * at the cloud's surface, where all light goes one way, is a fifth too much: the light there is a step, not a cosine. */
 #include <math.h>
 #include <stdlib.h>
 

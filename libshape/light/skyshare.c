@@ -1,6 +1,6 @@
-/* The sky in the directions of the ordinates. A clear day's is two to ten times as bright near the sun and the horizon as
- * across (light/sky.c), and below the horizon it fades from its haze to the ground; a forward scattering cloud shows from which side its
- * light came. */
+/* The sky in the directions of the ordinates. A clear day's is two to ten times as bright near the sun and the horizon
+ * as across (light/sky.c), and below the horizon it fades from its haze to the ground; a forward scattering cloud shows
+ * from which side its light came. */
 #include <math.h>
 #include <stdbool.h>
 

@@ -1,7 +1,8 @@
-/* A clear sky through the peak of forward scattering. The delta scaling takes what is scattered within it as going straight on, and
- * the bright band of the horizon would be seen through a cloud as sharp as beside it, up to a fifth too bright. Light that was
- * scattered n times has been turned n times: the sky is convolved n times with the peak (Goudsmit and Saunderson 1940, for
- * electrons). Once is done with the peak itself, more with the distribution of von Mises and Fisher that has the n-th power of its mean cosine. */
+/* A clear sky through the peak of forward scattering. The delta scaling takes what is scattered within it as going
+ * straight on, and the bright band of the horizon would be seen through a cloud as sharp as beside it, up to a fifth
+ * too bright. Light that was scattered n times has been turned n times: the sky is convolved n times with the peak
+ * (Goudsmit and Saunderson 1940, for electrons). Once is done with the peak itself, more with the distribution of von
+ * Mises and Fisher that has the n-th power of its mean cosine. */
 #include "light/skyspread.h"
 
 #include <math.h>
